@@ -164,9 +164,7 @@ class Lanes:
 
     def pointer(self, lane: int) -> str:
         """The type of the local for the rows."""
-        if lane in self.opened:
-            return "auto *"
-        return "auto" if lane in self.viewed else f"{self.type(lane)} *restrict"
+        return "auto" if lane in self.opened | self.viewed else f"{self.type(lane)} *restrict"
 
     def grown(self, lane: int, missing: str) -> str | None:
         """The call that makes room for rows, and says whether it could; None where the caller's memory is all there is."""

@@ -184,7 +184,7 @@ def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, count: nod
         return f"rosetta_jit::detail::copy_known<{size}>({', '.join((*location(scope, target), *location(scope, source)))});"
     copied = ", ".join((*location(scope, target), *location(scope, source), size))
     lanes = [each.lane for each in (target, source) if isinstance(each, nodes.Place)]
-    if scope.lanes.dialect == "c++" and any(scope.lanes.stride(lane) > 1 for lane in lanes):
+    if scope.lanes.dialect == "c++" and any(scope.lanes.stride(lane) > 1 or lane in scope.lanes.opened for lane in lanes):
         return f"rosetta_jit::detail::copy_numbers({copied});"
     if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place):
         return f"rosetta_jit::detail::copy_few({copied});"

@@ -19,7 +19,7 @@ FEW, FEW_BYTES = 16, 256
 TOO_MANY = NOT_EMPTY
 """What stands for a list of more: nothing is wrong with it, but other statements read it."""
 OPENED = Given("", "")
-"""Elements whose pointer is there once a list is opened."""
+"""Elements that are reached once a list is opened."""
 
 
 def most_elements(size: int) -> int:
@@ -34,10 +34,10 @@ def of_few_elements(body: Block, lanes: Lanes) -> Block:
 
 
 def lanes_of_few_elements(lanes: Lanes) -> Lanes:
-    """How such statements reach the object: rows are elements of its lists, whose pointers are declared where a list is opened."""
+    """How such statements reach the object: rows are elements of its lists, which are declared where a list is opened."""
     opened = frozenset[int]().union(*_lists(lanes))
     straight = {
-        at: replace(each, statement=f"auto *const {each.statement}") if each.lane in opened else each for at, each in lanes.straight.items()
+        at: replace(each, statement=f"auto const {each.statement}") if each.lane in opened else each for at, each in lanes.straight.items()
     }
     return replace(lanes, straight=straight, given={**lanes.given, **dict.fromkeys(opened, OPENED)}, packed={})
 

@@ -56,7 +56,7 @@ def _found(walk: Walk, kernel: Kernel, lists: Iterable[Opened]) -> list[tuple[Fo
 
 
 def _lies(walk: Walk, lane: int) -> str:
-    return f"{_name(walk, lane)}::lies<std::remove_pointer_t<decltype({walk.lanes.rows(lane)})>>()"
+    return f"{_name(walk, lane)}::lies<rosetta_jit::detail::in_order<decltype({walk.lanes.rows(lane)})>>()"
 
 
 def _name(walk: Walk, lane: int) -> str:

@@ -57,7 +57,7 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
     """The encoder; ``walk`` has printed what takes an object apart."""
     lanes, encode, size = parts.lanes, parts.printed["encode"], parts.printed["size"].attempts[0]
     is_straight, memory, row = is_local(walk, encode.hidden), "written_" if writes_apart(unit) else "memory_", lanes.type(0)
-    begun = (f"    holder->{lanes.rows(lane)}.reset();" for lane in copied(parts, directs, walk))
+    begun = (f"    holder->{lanes.rows(lane)}.{emptying(walk, lane)};" for lane in copied(parts, directs, walk))
     measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if encode.hidden else ""
     return Template(known["encode"]).substitute(
         words,
@@ -86,6 +86,11 @@ def copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
     """The lanes whose rows an encoder puts together in the codec's memory."""
     shown = {*(each.lane for each in directs), *walk.addressed, *walk.within}
     return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
+
+
+def emptying(walk: Walk, lane: int) -> str:
+    """What leaves a lane without rows; ``walk`` is that of the encoder, which has printed what takes an object apart."""
+    return "reset()" if lane in walk.shows else "clear()"
 
 
 def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -> str:

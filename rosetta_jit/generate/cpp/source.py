@@ -24,6 +24,7 @@ from rosetta_jit.generate.cpp.reading import (
     container_type,
     copied,
     directs_of,
+    emptying,
     encoder,
     reader,
     source_struct,
@@ -259,7 +260,9 @@ def _methods(
         most = dict.fromkeys(walk.opened, f"{FILLED}->most")
         own = [lane for lane in range(1, lanes.own) if lane not in bound and lane in printed["borrow"].named]
         own = [lane for lane in own if lane not in most or lanes.capacity(lane) in printed["borrow"].text]
-        reset = "\n".join(f"    {FILLED}->{lanes.rows(lane)}.reset({most.get(lane, '')});" for lane in own)
+        reset = "\n".join(
+            f"    {FILLED}->{lanes.rows(lane)}.{f'reset({most[lane]})' if lane in most else emptying(walk, lane)};" for lane in own
+        )
         asks = printed["borrow"].text + reset.replace(FILLED, "holder")
         texts.append(
             Template(known["decode"]).substitute(

@@ -43,8 +43,9 @@ class Walk:
     """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
 
     ``within`` are the lists within lists that an encoder reads where they are, by their lanes. ``takes``: it copies rows, whose lanes have
-    memory of their own. ``taken`` are the lists that a decoder has put into the object
-    already, where their elements lie in memory as rows do, ``straight`` the numbers, as rows would have them, ``opened`` lists and texts.
+    memory of their own; ``shows`` are lanes that may show the elements of a container instead. ``taken`` are the lists that a decoder has
+    put into the object already, where their elements lie in memory as rows do, ``straight`` the numbers, as rows would have them,
+    ``opened`` lists and texts.
     """
 
     unit: Unit
@@ -58,6 +59,7 @@ class Walk:
     straight: frozenset[str] = frozenset()
     opened: frozenset[int] = frozenset()
     takes: bool = False
+    shows: set[int] = field(default_factory=set[int])
     writer: Writer = field(default_factory=Writer)
     depth: int = 0
     in_rows: int = 0
@@ -193,9 +195,11 @@ class Walk:
             if slot.lane in self.addressed:
                 self.lines("address", spot, row=row, type=self.lanes.type(slot.lane))
                 return
-            how = "take" if self.in_rows else "show"
-            self.takes |= how == "take"
-            self.lines("sequence", spot, row=row, lane=lane, how=how)
+            if self.in_rows:
+                self.takes = True
+            else:
+                self.shows.add(slot.lane)
+            self.lines("sequence", spot, row=row, lane=lane, how="take" if self.in_rows else "show")
             return
         if slot.lane in self.taken:
             with self.writer.indented(f"if constexpr (!decltype(from.{lane})::LIES) {{"):

@@ -471,7 +471,7 @@ void gather(const ::torso_state::holder &source, torso_state_source *holder, tor
 {
     static_cast<void>(holder);
     row = {};
-    holder->unknown.reset();
+    holder->unknown.clear();
     holder->angles.read(source.angles());
     row.angles = {0, holder->angles.used};
     collect(source, *holder, row);

@@ -411,8 +411,10 @@ template <class Row> struct lane {
         }
     }
 
-    /* No rows, and its own memory. */
-    void reset()
+    /* No rows: `clear` where no elements of a container have been shown, which `reset` changes for its own memory. */
+    void clear() noexcept { used = 0; }
+
+    void reset() noexcept
     {
         rows = memory.get();
         capacity = room;
@@ -729,34 +731,88 @@ inline std::int64_t write_varint_exactly(unsigned char *target, std::uint64_t nu
     return at - target;
 }
 
-/* The same of a number below 1 << 28, where there is room for four bytes. */
-inline std::int64_t write_varint_of_four(unsigned char *target, std::uint64_t number) noexcept
-{
-    const std::int64_t size = varint_size(number);
-    std::uint32_t word = static_cast<std::uint32_t>(number);
-    word += (word & 0x0fffc000u) * 3u;
-    word += word & 0x3f803f80u;
-    word |= static_cast<std::uint32_t>(VARINT_MORE[size]);
-    std::memcpy(target, &word, sizeof word);
-    return size;
-}
-
-/* And of a number below 1 << 14, where there is room for two bytes. */
+/* The same of a number below 1 << 14, where there is room for two bytes. */
 inline std::int64_t write_varint_of_two(unsigned char *target, std::uint64_t number) noexcept
 {
-    const unsigned low = static_cast<unsigned>(number), more = low >= 128u ? 1u : 0u;
-    const std::uint16_t both = static_cast<std::uint16_t>(low + (low & 0x3f80u) + (more << 7));
+    const std::uint64_t more = (number + 0x3f80u) >> 14;
+    const std::uint16_t both = static_cast<std::uint16_t>(number + (number & 0x3f80u) + (more << 7));
     std::memcpy(target, &both, sizeof both);
     return 1 + static_cast<std::int64_t>(more);
 }
 
-/* The bytes that numbers take from `number` on; `value` says which they are. */
-template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_varints(std::int64_t &number, std::int64_t count, Value value)
+/* Two numbers below 1 << 42 are written where there is room for 16 bytes, and the bytes of several numbers are counted, as many as come in groups. */
+#if defined(__SSE2__)
+/* The exponents, from bit 52 on, of two numbers below 1 << 52 as floats that are four times as large: 1025 and the number of the highest bit. */
+ROSETTA_JIT_INLINE pair exponents(pair numbers) noexcept
+{
+    typedef double floats __attribute__((vector_size(16)));
+    constexpr std::uint64_t HUGE_FLOAT = std::uint64_t{1023 + 54} << 52; /* 1 << 54, whose fraction counts fours */
+    const floats sums = reinterpret_cast<floats>(numbers | pair{HUGE_FLOAT | 1, HUGE_FLOAT | 1});
+    return reinterpret_cast<pair>(sums - floats{0x1p54, 0x1p54});
+}
+
+ROSETTA_JIT_INLINE std::int64_t write_two_varints(unsigned char *target, std::uint64_t first, std::uint64_t second) noexcept
+{
+    constexpr std::uint64_t LOW = 0x3fff, MIDDLE = LOW << 16, HIGH = LOW << 32, UPPER = 0x3f803f803f80u;
+    const pair numbers = {first, second};
+    const pair halves = (numbers & pair{LOW, LOW}) | ((numbers << 2) & pair{MIDDLE, MIDDLE}) | ((numbers << 4) & pair{HIGH, HIGH});
+    const pair apart = halves + (halves & pair{UPPER, UPPER}), sizes = exponents(apart) >> 55; /* an eighth of them: 128 and the number of the last byte */
+    const std::uint64_t one = sizes[0] - 127, other = sizes[1] - 127;
+    const pair words = apart | pair{VARINT_MORE[one], VARINT_MORE[other]};
+    const std::uint64_t written[2] = {words[0], words[1]};
+    std::memcpy(target, &written[0], sizeof written[0]);
+    std::memcpy(target + one, &written[1], sizeof written[1]);
+    return static_cast<std::int64_t>(one + other);
+}
+
+template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_several(std::int64_t &number, std::int64_t count, Value value)
+{
+    constexpr std::int64_t EXCESS = 143; /* 9/64 of the exponent are so many bytes more than the number has */
+    const __m128i nine_of_64 = _mm_set1_epi16(9 << 10);
+    std::int64_t size = 0;
+    pair sizes = {0, 0};
+    const auto of_two = [&](pair each) { return reinterpret_cast<pair>(_mm_mulhi_epu16(reinterpret_cast<__m128i>(exponents(each) >> 52), nine_of_64)); };
+    const auto longer = [](pair each) { return (each + pair{0x3f80, 0x3f80}) >> 14; }; /* 1 if they take two bytes, not one */
+    for (; count - number >= 8; number += 8) {
+        const pair a = {value(number), value(number + 1)}, b = {value(number + 2), value(number + 3)};
+        const pair c = {value(number + 4), value(number + 5)}, d = {value(number + 6), value(number + 7)};
+        const pair any = (a | b) | (c | d);
+        const std::uint64_t all = any[0] | any[1];
+        if (all < std::uint64_t{1} << 14) {
+            sizes += (longer(a) + longer(b)) + (longer(c) + longer(d));
+            size += 8;
+        } else if (all < std::uint64_t{1} << 52) {
+            sizes += (of_two(a) + of_two(b)) + (of_two(c) + of_two(d));
+            size -= 8 * EXCESS;
+        } else {
+            for (std::int64_t each = number; each < number + 8; each++) {
+                size += varint_size(value(each));
+            }
+        }
+    }
+    return size + static_cast<std::int64_t>(sizes[0] + sizes[1]);
+}
+#else
+inline std::int64_t write_two_varints(unsigned char *target, std::uint64_t first, std::uint64_t second) noexcept
+{
+    const std::int64_t size = write_varint(target, first);
+    return size + write_varint(target + size, second);
+}
+
+template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_several(std::int64_t &number, std::int64_t count, Value value)
 {
     std::int64_t size = 0;
     for (; count - number >= 4; number += 4) {
         size += varint_size(value(number)) + varint_size(value(number + 1)) + varint_size(value(number + 2)) + varint_size(value(number + 3));
     }
+    return size;
+}
+#endif
+
+/* The bytes that numbers take from `number` on; `value` says which they are. */
+template <class Value> ROSETTA_JIT_INLINE std::int64_t size_of_varints(std::int64_t &number, std::int64_t count, Value value)
+{
+    std::int64_t size = size_of_several(number, count, value);
     for (; number < count; number++) {
         size += varint_size(value(number));
     }
@@ -786,11 +842,9 @@ ROSETTA_JIT_INLINE std::int64_t write_varints(unsigned char *bytes, std::int64_t
             size += write_varint_of_two(target + size, each[1]);
             size += write_varint_of_two(target + size, each[2]);
             size += write_varint_of_two(target + size, each[3]);
-        } else if (all < 1u << 28 && end - at >= 16) {
-            size = write_varint_of_four(target, each[0]);
-            size += write_varint_of_four(target + size, each[1]);
-            size += write_varint_of_four(target + size, each[2]);
-            size += write_varint_of_four(target + size, each[3]);
+        } else if (all < std::uint64_t{1} << 42 && end - at >= 32) {
+            size = write_two_varints(target, each[0], each[1]);
+            size += write_two_varints(target + size, each[2], each[3]);
         } else if (end - at >= 40) {
             size = write_varint(target, each[0]);
             size += write_varint(target + size, each[1]);
@@ -1536,7 +1590,7 @@ struct lie_in_order<Container, std::enable_if_t<has_data<const Container>::value
     : std::is_same<std::remove_cv_t<std::remove_reference_t<decltype(*data_of(std::declval<const Container &>()))>>, element_type<Container>> {};
 
 /* The elements of a list, by their index. */
-template <class Container> ROSETTA_JIT_INLINE auto elements_of(const Container &source) noexcept
+template <class Container> ROSETTA_JIT_INLINE auto elements_of(Container &source) noexcept
 {
     if constexpr (lie_in_order<Container>::value) {
         return data_of(source);
@@ -1579,12 +1633,38 @@ constexpr bool may_lie = std::is_standard_layout_v<Class> && std::is_trivially_c
 template <class Class, class Row> constexpr bool may_lie = false;
 #endif
 
-/* Elements as they lie in a message; of an empty list there may be no place. */
-template <class Element> void copy_elements(Element *target, const unsigned char *from, std::int64_t size)
+/* Elements as they lie in a message; of an empty list there may be no place. Those that an iterator reaches never lie so. */
+template <class Elements> void copy_elements(Elements target, const unsigned char *from, std::int64_t size)
 {
-    if (ROSETTA_JIT_LIKELY(size > 0)) {
-        std::memcpy(static_cast<void *>(target), from, static_cast<std::size_t>(size));
+    static_cast<void>(target);
+    static_cast<void>(from);
+    if constexpr (std::is_pointer_v<Elements>) {
+        if (ROSETTA_JIT_LIKELY(size > 0)) {
+            std::memcpy(static_cast<void *>(target), from, static_cast<std::size_t>(size));
+        }
     }
+    static_cast<void>(size);
+}
+
+/* What elements are that lie one behind the other: those that an iterator reaches do not. */
+struct not_in_order {};
+template <class Elements> using in_order = std::conditional_t<std::is_pointer_v<Elements>, std::remove_pointer_t<Elements>, not_in_order>;
+
+/* Numbers of a message that an iterator reaches. */
+template <class Elements>
+std::enable_if_t<!std::is_pointer_v<Elements>> copy_numbers(Elements target, std::int64_t to, const unsigned char *source, std::int64_t from, std::int64_t size)
+{
+    using Number = typename std::iterator_traits<Elements>::value_type;
+    constexpr std::int64_t STEP = sizeof(Number);
+    for (std::int64_t at = 0; at < size; at += STEP) {
+        std::memcpy(&target[static_cast<std::ptrdiff_t>((to + at) / STEP)], source + from + at, STEP);
+    }
+}
+
+template <std::int64_t Size, class Elements>
+std::enable_if_t<!std::is_pointer_v<Elements>> copy_known(Elements target, std::int64_t to, const unsigned char *source, std::int64_t from)
+{
+    copy_numbers(target, to, source, from, Size);
 }
 
 /* To write a message: rows that are made of the elements of a container when they are read. `Rows` says how. */
@@ -1768,17 +1848,20 @@ struct without_values {
     template <class Choice, class = decltype(Choice::SKIP)> constexpr operator Choice() const noexcept { return Choice::SKIP; }
 };
 
-/* Lists whose elements are set where they are as a message is read: they have no rows, and no more elements than rows may be. */
+/* Lists whose elements are set where they are as a message is read: they have no rows, and no more elements than rows may be. A pointer reaches elements that
+   lie one behind the other, an iterator those of other lists, as of std::deque. */
 template <class Container> struct open_lane {
     using Element = element_type<Container>;
-    static_assert(has_data<Container>::value, "the elements of a list must lie one behind the other");
-    Element *rows = nullptr;
+    using Elements = decltype(elements_of(std::declval<Container &>()));
+    static_assert(std::is_base_of_v<std::random_access_iterator_tag, typename std::iterator_traits<Elements>::iterator_category>,
+                  "the elements of a list must be reached by their index");
+    Elements rows = {};
     std::int64_t capacity = 0;
     std::int64_t used = 0;
 
     void reset(std::int64_t most) noexcept
     {
-        rows = nullptr;
+        rows = {};
         capacity = most;
         used = 0;
     }
@@ -1787,13 +1870,14 @@ template <class Container> struct open_lane {
 };
 
 /* Gives a list as many elements as follow in the message. */
-template <class Container> element_type<Container> *opened(Container &target, std::int64_t count)
+template <class Container> auto opened(Container &target, std::int64_t count)
 {
-    static_assert(has_data<Container>::value, "the elements of a list must lie one behind the other");
     if constexpr (std::is_constructible_v<element_type<Container>, without_values>) {
         const std::size_t wanted = static_cast<std::size_t>(count);
         if (wanted > target.size()) {
-            target.reserve(wanted);
+            if constexpr (lie_in_order<Container>::value) {
+                target.reserve(wanted);
+            }
             while (target.size() < wanted) {
                 target.emplace_back(without_values{});
             }
@@ -1802,7 +1886,7 @@ template <class Container> element_type<Container> *opened(Container &target, st
     if (count != count_of(target)) { /* as hardly ever when messages come again and again */
         resize_to(target, count);
     }
-    return data_of(target);
+    return elements_of(target);
 }
 
 /* The same of numbers, of which there may be a fixed count: an array has as many, or a vector gets them, as lcm-gen has both. */
