@@ -82,7 +82,7 @@ def test_a_compiled_file_without_its_head_is_made_anew(package, harm):
 
 
 def test_a_compiled_file_that_is_compared_by_its_hash(package):
-    py_compile.compile(str(package / "two.py"), invalidation_mode=py_compile.PycInvalidationMode.CHECKED_HASH)
+    py_compile.compile(str(package / "two.py"), str(compiled(package)), invalidation_mode=py_compile.PycInvalidationMode.CHECKED_HASH)
     (package / "two.py").write_text("VALUE = 4\ndef where(): pass\n")
     assert shown(package) == FOUND.replace("2 1", "4 1")
 

@@ -61,7 +61,7 @@ def compiled(text: str, header: str, name: str) -> ctypes.CDLL:
         (Path(folder) / f"{name}.h").write_text(header)
         (Path(folder) / f"{name}.c").write_text(text)
         made = Path(folder) / "unit.so"
-        command = [*GCC, "-O1", *TRAPS, "-shared", "-fPIC", f"{name}.c", "-lm", "-o", made]
+        command = [*GCC, "-O0", *TRAPS, "-shared", "-fPIC", f"{name}.c", "-lm", "-o", made]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         return ctypes.CDLL(str(made))

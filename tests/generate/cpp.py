@@ -7,19 +7,27 @@ import shutil
 import subprocess
 from hashlib import sha256
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.shared import FOLDER, HEADERS
 
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
 STRICT = ("-std=c++17", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
 SANITIZED = ("-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-THOROUGH = ("-O2", *QUICK[1:])
-CAREFUL = ("-O1", "-fstrict-aliasing", *QUICK[1:])
+CALLED = ("--param=asan-instrumentation-with-call-threshold=0", "-fno-sanitize-address-use-after-scope")
+"""Accesses are checked by calls and not in line, and scopes without optimisation alone: that is compiled in two thirds of the time."""
+THOROUGH = ("-O2", *QUICK[1:], *CALLED)
+CAREFUL = ("-O1", "-fstrict-aliasing", *QUICK[1:], *CALLED)
 """What -O2 makes of objects of one class that are read as another, in two thirds of the time."""
+WATCHED = ("-O0", "-fsanitize=address")
+"""The memory alone, for large units: they are compiled in half the time."""
 PLAIN = ("-O0",)
-OFTEN = (QUICK, THOROUGH, CAREFUL, PLAIN)
+OFTEN = (QUICK, THOROUGH, CAREFUL, WATCHED, PLAIN)
 """Options with which many programs are made: for these the headers that all of them begin with are read once."""
 MAIN = Path(__file__).with_name("driver.cpp")
 OURS = "rosetta_jit/rosetta_jit.hpp"
@@ -35,6 +43,16 @@ def write(folder: Path, texts: dict[str, str]) -> str:
     return next(name for name in texts if name.endswith(".cpp"))[:-4]
 
 
+def write_as_one(folder: Path, name: str, units: Iterable[dict[str, str]]) -> str:
+    """Units in one header and one source file, which takes a compiler half the time."""
+    texts = {file: text for unit in units for file, text in unit.items()}
+
+    def joined(end: str) -> str:
+        return "".join(text for file, text in texts.items() if file.endswith(end) and file != OURS)
+
+    return write(folder, {f"{name}.hpp": joined(".hpp"), f"{name}.cpp": joined(".cpp")} | texts)
+
+
 def encoding_once(folder: Path) -> Path:
     """The usual driver encodes twice, which of a mapping with state gives two messages: this one encodes once."""
     text, once = MAIN.read_text(), folder / "once.cpp"
@@ -43,10 +61,18 @@ def encoding_once(folder: Path) -> Path:
     return once
 
 
-def program(folder: Path, name: str, *sources: str, compiler: str = "g++", options: tuple[str, ...] = SANITIZED, main: Path = MAIN) -> Path:
-    """The program around a unit, which must not give a compiler cause to complain."""
+def program(
+    folder: Path,
+    name: str,
+    *sources: str,
+    compiler: str = "g++",
+    options: tuple[str, ...] = SANITIZED,
+    main: Path = MAIN,
+    units: Iterable[str] = (),
+) -> Path:
+    """The program around a unit, or around several that are written as one, which must not give a compiler cause to complain."""
     made = folder / f"{name}.{compiler}"
-    words = [f'-DHEADER="{name}.hpp"', f"-DUNIT={name}"]
+    words = [f'-DHEADER="{name}.hpp"', f"-DUNITS={''.join(f'EACH({each})' for each in units or (name,))}"]
     begun = read_once(folder, name, options) if compiler == "g++" and begins_with_unit(main) else ()
     command = [compiler, *STRICT, *options, *begun, f"-I{folder}", *words, main, folder / f"{name}.cpp", *sources, "-lm", "-o", made]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)

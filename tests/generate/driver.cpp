@@ -1,7 +1,8 @@
 // Reads messages from standard input, each behind its size in four bytes, and says what a generated codec makes of each: the message that it
-// writes of what it read, or the error. HEADER and UNIT are the unit's.
+// writes of what it read, or the error. HEADER declares the units, which UNITS lists as EACH(name); the first argument names one if there are several.
 #include HEADER
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -16,7 +17,7 @@ static void show(const rosetta_jit::error &error, bool is_read)
     std::printf(error.line.empty() ? "\n" : " (%s)\n", error.line.c_str());
 }
 
-static void answer(UNIT::codec &codec, UNIT::holder &holder, const unsigned char *message, std::size_t size)
+template <class Codec, class Holder> static void answer(Codec &codec, Holder &holder, const unsigned char *message, std::size_t size)
 {
     const auto read = codec.try_decode(message, size, holder);
     if (!read) {
@@ -53,10 +54,10 @@ static void answer(UNIT::codec &codec, UNIT::holder &holder, const unsigned char
     std::printf("\n");
 }
 
-int main()
+template <class Codec, class Holder> static int answer_all()
 {
-    UNIT::codec codec;
-    UNIT::holder holder; // the same for all: nothing of one message may be left in the next
+    Codec codec;
+    Holder holder; // the same for all: nothing of one message may be left in the next
     unsigned char head[4];
     while (std::fread(head, 1, sizeof head, stdin) == sizeof head) {
         const std::size_t size = head[0] | static_cast<std::size_t>(head[1]) << 8 | static_cast<std::size_t>(head[2]) << 16 | static_cast<std::size_t>(head[3]) << 24;
@@ -67,4 +68,14 @@ int main()
         answer(codec, holder, message.get(), size);
     }
     return 0;
+}
+
+int main(int count, char **arguments)
+{
+#define EACH(unit) \
+    if (count < 2 || std::strcmp(arguments[1], #unit) == 0) { \
+        return answer_all<unit::codec, unit::holder>(); \
+    }
+    UNITS
+    return 2;
 }

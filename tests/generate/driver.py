@@ -62,10 +62,10 @@ def driver_of_object(folder: Path, name: str, compiler: str = "gcc", options: tu
     return made
 
 
-def answers(program: Path, messages: list[bytes], *runner: str) -> list[str]:
-    """What the program says of each message."""
+def answers(program: Path, messages: list[bytes], *runner: str, unit: str = "") -> list[str]:
+    """What the program says of each message; one of several units names its own."""
     given = b"".join(struct.pack("<I", len(message)) + message for message in messages)
-    done = subprocess.run([*runner, program], input=given, capture_output=True, check=False)
+    done = subprocess.run([*runner, program, *filter(None, [unit])], input=given, capture_output=True, check=False)
     assert done.returncode == 0, done.stderr.decode()
     return done.stdout.decode("utf-8", "replace").split("\n")[:-1]
 

@@ -84,24 +84,38 @@ def schema(type_):
     return {"rj/msg/Message.msg": TYPES[type_][0]}
 
 
+def called(type_):
+    """The name of a type's unit."""
+    return type_.replace(" ", "_")
+
+
+@pytest.fixture(scope="module", params=["ros1", "cdr"])
+def units(request, tmp_path_factory):
+    """The encoding, the texts of all types in it, and the program around them."""
+    options = {type_: {"encoding": request.param, "schema": schema(type_)} for type_ in TYPES}
+    texts = {type_: generated(type_request("decode", "rj/Message", options[type_]), "cpp", BOTH, called(type_)) for type_ in TYPES}
+    folder = tmp_path_factory.mktemp(request.param)
+    name = cpp.write_as_one(folder, "units", texts.values())
+    return request.param, texts, cpp.program(folder, name, options=QUICK, units=map(called, TYPES))
+
+
 @cpp.needs_cpp
-@pytest.mark.parametrize("encoding", ["ros1", "cdr"])
 @pytest.mark.parametrize("type_", TYPES)
-def test_messages_that_are_harmed_get_the_same_answers(type_, encoding, tmp_path):
+def test_messages_that_are_harmed_get_the_same_answers(type_, units):
+    encoding, texts, program = units
+    header = texts[type_][f"{called(type_)}.hpp"]
     options = {"encoding": encoding, "schema": schema(type_)}
-    texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit")
     is_found = encoding == "ros1" or type_ not in ALIGNED
-    assert ("static bool is_read(" in texts["unit.hpp"]) == (type_ in IN_HEADER and is_found)
-    assert ("static bool is_read_empty(" in texts["unit.hpp"]) == (type_ in (EMPTY if encoding == "ros1" else EMPTY_IN_CDR))
-    assert ("put_at_once(" in texts["unit.hpp"]) == (type_ in WRITTEN and is_found)
+    assert ("static bool is_read(" in header) == (type_ in IN_HEADER and is_found)
+    assert ("static bool is_read_empty(" in header) == (type_ in (EMPTY if encoding == "ros1" else EMPTY_IN_CDR))
+    assert ("put_at_once(" in header) == (type_ in WRITTEN and is_found)
     values = TYPES[type_][1]
     other = values | OTHERS.get(type_, {})
     encoders_ = encoders(type_, encoding)
     good = [bytes(encode(each)) for encode in encoders_ for each in (values, other, {})]
     messages = [message[:end] + more for message in good for end in range(len(message) + 1) for more in (b"", b"\0", b"\x80")]
     messages += harmed(good, 40, f"{type_} {encoding}")
-    name = cpp.write(tmp_path, texts)
-    same(answers(cpp.program(tmp_path, name, options=QUICK), messages), rj.Decoder.of("rj/Message", **options), encoders_[0], messages)
+    same(answers(program, messages, unit=called(type_)), rj.Decoder.of("rj/Message", **options), encoders_[0], messages)
 
 
 LISTS = {

@@ -116,7 +116,8 @@ def test_lists_within_lists_are_set_as_they_are_read(header, encoding, tmp_path)
     ]
     good = [bytes(encode(each)) for each in values]
     messages = [*good, *harmed(good, 25, f"{header} {encoding}"), *good]
-    same(answers(cpp.program(tmp_path, name, options=THOROUGH), messages), decode, encode, messages)
+    compiled = THOROUGH if header == "plain" else CAREFUL
+    same(answers(cpp.program(tmp_path, name, options=compiled), messages), decode, encode, messages)
 
 
 @pytest.mark.parametrize("element", ["Place[2] places", "bool[] flags"])

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import subprocess
 
-import pytest
-
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
@@ -24,18 +22,23 @@ CLASSES = {
     "Lab.arm.Kin.pose.inner": "::Lab::arm::Kin::pose_inner",
     "Lab.arm.Kin.pose.inner.Deep": "::Lab::arm::Kin::pose_inner_Deep",
 }
+UNITS = {f"of_{type_.rpartition('.')[2].lower()}": type_ for type_ in CLASSES}
 MESSAGES = [b"", b"\x09" + bytes(8), b"\x12\x02\x08\x05", b"\x1a\x04\x12\x02\x08\x07", b"\x2a\x02\x08\x01", b"\x08\x07", b"\x0a\xff"]
 
 
-@pytest.mark.parametrize("type_", CLASSES)
-def test_classes_are_found_whatever_packages_and_messages_are_called(type_, tmp_path):
+def test_classes_are_found_whatever_packages_and_messages_are_called(tmp_path):
     options = {"encoding": "protobuf", "schema": {"lab.proto": SCHEMA}}
-    texts = generated(type_request("decode", type_, options), "cpp", ("decode", "encode"), "unit", Wishes(holder="protobuf"))
-    assert f"using holder = {CLASSES[type_]};" in texts["unit.hpp"]
+    texts = {
+        type_: generated(type_request("decode", type_, options), "cpp", ("decode", "encode"), unit, Wishes(holder="protobuf"))
+        for unit, type_ in UNITS.items()
+    }
+    for unit, type_ in UNITS.items():
+        assert f"using holder = {CLASSES[type_]};" in texts[type_][f"{unit}.hpp"]
     native.needs_protoc()
     (tmp_path / "lab.proto").write_text(SCHEMA)
     subprocess.run(["protoc", "--cpp_out=.", "lab.proto"], cwd=tmp_path, check=True)
-    name = cpp.write(tmp_path, texts)
-    program = cpp.program(tmp_path, name, "lab.pb.cc", "-lprotobuf", options=(*cpp.PLAIN, "-w", f"-isystem{tmp_path}"))
-    programs = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
-    assert driver.answers(program, MESSAGES) == [driver.expected(*programs, each) for each in MESSAGES]
+    name = cpp.write_as_one(tmp_path, "units", texts.values())
+    program = cpp.program(tmp_path, name, "lab.pb.cc", "-lprotobuf", options=(*cpp.PLAIN, "-w", f"-isystem{tmp_path}"), units=UNITS)
+    for unit, type_ in UNITS.items():
+        programs = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
+        assert driver.answers(program, MESSAGES, unit=unit) == [driver.expected(*programs, each) for each in MESSAGES]

@@ -12,7 +12,7 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
 from tests.generate import cpp, native
-from tests.generate.cpp import QUICK
+from tests.generate.cpp import QUICK, WATCHED
 from tests.generate.driver import answers, harmed
 from tests.generate.test_cpp import BOTH, same
 
@@ -142,13 +142,13 @@ def test_classes_of_protoc(name, tmp_path):
     (tmp_path / "t.proto").write_text(SCHEMAS[name][0])
     subprocess.run(["protoc", "--cpp_out=.", "t.proto"], cwd=tmp_path, check=True)
     subprocess.run(["g++", "-std=c++17", "-w", "-O0", "-c", "t.pb.cc"], cwd=tmp_path, check=True)
-    compare(tmp_path, name, Wishes(holder="protobuf", include="t.pb.h"), "t.pb.o", "-lprotobuf")
+    compare(tmp_path, name, Wishes(holder="protobuf", include="t.pb.h"), "t.pb.o", "-lprotobuf", options=WATCHED)
 
 
-def compare(folder, name, wishes, *sources):
+def compare(folder, name, wishes, *sources, options=QUICK):
     """What the program says of messages is what the library says."""
-    options = {"encoding": "protobuf", "schema": {"t.proto": SCHEMAS[name][0]}}
-    unit = cpp.write(folder, generated(type_request("decode", "t.M", options), "cpp", BOTH, "unit", wishes))
+    of = {"encoding": "protobuf", "schema": {"t.proto": SCHEMAS[name][0]}}
+    unit = cpp.write(folder, generated(type_request("decode", "t.M", of), "cpp", BOTH, "unit", wishes))
     messages = given(name)
-    found = answers(cpp.program(folder, unit, *sources, options=(*QUICK, f"-isystem{folder}")), messages)
-    same(found, rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options), messages)
+    found = answers(cpp.program(folder, unit, *sources, options=(*options, f"-isystem{folder}")), messages)
+    same(found, rj.Decoder.of("t.M", **of), rj.Encoder.of("t.M", **of), messages)

@@ -127,13 +127,13 @@ def test_in_c(name, tmp_path):
 @pytest.mark.parametrize("name", ALL)
 def test_in_cpp(name, tmp_path):
     made = case(name)
-    for directions in made.ways:
-        unit = cpp.write(tmp_path, generated(made.request, "cpp", directions, "unit"))
-        for compiler in installed("cpp"):
-            cpp.compiled(compiler, tmp_path, unit)
+    units = {f"to_{'_'.join(directions)}": directions for directions in made.ways}
+    texts = [generated(made.request, "cpp", directions, unit) for unit, directions in units.items()]
+    name = cpp.write_as_one(tmp_path, "units", texts)
+    for compiler in installed("cpp"):
+        cpp.compiled(compiler, tmp_path, name)
     if made.is_both:
-        unit = cpp.write(tmp_path, generated(made.request, "cpp", made.directions, "unit"))
-        assert driver.answers(cpp.program(tmp_path, unit, options=QUICK), made.messages) == made.wanted()
+        assert driver.answers(cpp.program(tmp_path, "to_decode_encode", options=QUICK), made.messages) == made.wanted()
 
 
 @pytest.mark.parametrize("name", ALL)

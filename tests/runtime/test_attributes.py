@@ -337,14 +337,14 @@ BOTH_WAYS = {
 
 @pytest.mark.skipif(not is_native(), reason="it is so anyway")
 @pytest.mark.parametrize("group", BOTH_WAYS)
-def test_everything_holds_without_compiled_accessors(group):
-    """Python and its messages as those that no compiled code knows."""
+def test_everything_holds_without_compiled_accessors(group, request):
+    """Python and its messages as those that no compiled code knows. A campaign runs the long tests of each group, too."""
     files = [str(path) for pattern in BOTH_WAYS[group] for path in sorted(Path(__file__).parents[1].glob(pattern))]
     assert len(files) >= len(BOTH_WAYS[group])
     program = (
         "import sys, pytest, rosetta_jit.runtime.callable as known\n"
         "known.is_native = lambda: False\n"
-        f"sys.exit(pytest.main(['-q', '-p', 'no:cacheprovider', '-p', 'no:randomly', *{files!r}]))"
+        f"sys.exit(pytest.main(['-q', '-p', 'no:randomly', '-m', {request.config.getoption('markexpr')!r}, *{files!r}]))"
     )
     ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout[-3000:]

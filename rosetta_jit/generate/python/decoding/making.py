@@ -191,16 +191,7 @@ class Make:
                 inside = slot.lane not in self.reserved
                 return f"data[{start} : {start} - 1 - {count}] if {count} else b''" if inside else self._text("_bytes", slot, start, count)
             case Array() if isinstance(element, Number):
-                if WIDTH[element.scalar] == 1 and element.scalar != "bool":
-                    borrowed = self._text("_bytes", slot, start, count)
-                    if self.unit.numpy:
-                        return f"_numbers_of(bytearray({borrowed}), {self.scope.dtype('u8')}).view({self.scope.dtype(element.scalar)})"
-                    return f'memoryview({borrowed}).cast("{CODES[element.scalar]}").tolist()'
-                numbers = f"{self.scope.view(slot.lane, CODES[element.scalar])}[{_rows(start, count)}]"
-                if self.unit.numpy:
-                    return self._numbers(numbers, element.scalar)
-                numbers += ".tolist()"
-                return f"[*map(bool, {numbers})]" if element.scalar == "bool" else numbers
+                return self._array_of_numbers(element.scalar, slot, start, count)
             case Array(inner) if self._is_borrowed(inner, slot.lane):
                 assert isinstance(inner, String)
                 return self._texts(inner, slot, start, count)
@@ -217,6 +208,19 @@ class Make:
                     return ": ".join(self.value(*each, slot.lane, index) for each in pair)
 
                 return f"{{{self._each(entry, slot.lane, start, count)}}}"
+
+    def _array_of_numbers(self, scalar: str, slot: Span, start: str, count: str) -> str:
+        """Integers of one byte may lie in the message, others lie in their lane."""
+        if WIDTH[scalar] == 1 and scalar != "bool":
+            borrowed = self._text("_bytes", slot, start, count)
+            if self.unit.numpy:
+                return f"_numbers_of(bytearray({borrowed}), {self.scope.dtype('u8')}).view({self.scope.dtype(scalar)})"
+            return f'memoryview({borrowed}).cast("{CODES[scalar]}").tolist()'
+        numbers = f"{self.scope.view(slot.lane, CODES[scalar])}[{_rows(start, count)}]"
+        if self.unit.numpy:
+            return self._numbers(numbers, scalar)
+        numbers += ".tolist()"
+        return f"[*map(bool, {numbers})]" if scalar == "bool" else numbers
 
     def _each(self, text: Callable[[str], str], lane: int, start: str, count: str) -> str:
         """The text of each element by the name of its index, in a comprehension."""
