@@ -257,12 +257,7 @@ def _methods(
         bound = {each.lane for each in directs["decode"]} | given
         finish = [f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"]]
         empty = [*finish, *(f"    rosetta_jit::detail::resize_to({each.at}, 0);" for each in opened if each.containers)]
-        most = dict.fromkeys(walk.opened, f"{FILLED}->most")
-        own = [lane for lane in range(1, lanes.own) if lane not in bound and lane in printed["borrow"].named]
-        own = [lane for lane in own if lane not in most or lanes.capacity(lane) in printed["borrow"].text]
-        reset = "\n".join(
-            f"    {FILLED}->{lanes.rows(lane)}.{f'reset({most[lane]})' if lane in most else emptying(walk, lane)};" for lane in own
-        )
+        reset = _emptied(parts, walk, bound)
         asks = printed["borrow"].text + reset.replace(FILLED, "holder")
         texts.append(
             Template(known["decode"]).substitute(
@@ -283,6 +278,16 @@ def _methods(
     words["function"] = "encode_any" if there.puts else "try_encode"
     texts += [encoder(unit, parts, known, words, directs["encode"], walk)] if "encode" in printed else []
     return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
+
+
+def _emptied(parts: Parts, walk: Walk, bound: set[int]) -> str:
+    """The statements that leave the lanes of a decoder without rows, but those that are ``bound`` to the object."""
+    lanes, borrow = parts.lanes, parts.printed["borrow"]
+    most = dict.fromkeys(walk.opened, f"{FILLED}->most")
+    own = [lane for lane in range(1, lanes.own) if lane not in bound and lane in borrow.named]
+    own = [lane for lane in own if lane not in most or lanes.capacity(lane) in borrow.text]
+    how = {lane: f"reset({most[lane]})" if lane in most else emptying(walk, lane) for lane in own}
+    return "\n".join(f"    {FILLED}->{lanes.rows(lane)}.{each};" for lane, each in how.items())
 
 
 def _told(text: str) -> Iterator[str]:
