@@ -1634,16 +1634,14 @@ template <class Class, class Row> constexpr bool may_lie = false;
 #endif
 
 /* Elements as they lie in a message; of an empty list there may be no place. Those that an iterator reaches never lie so. */
-template <class Elements> void copy_elements(Elements target, const unsigned char *from, std::int64_t size)
+template <class Elements>
+void copy_elements([[maybe_unused]] Elements target, [[maybe_unused]] const unsigned char *from, [[maybe_unused]] std::int64_t size)
 {
-    static_cast<void>(target);
-    static_cast<void>(from);
     if constexpr (std::is_pointer_v<Elements>) {
         if (ROSETTA_JIT_LIKELY(size > 0)) {
             std::memcpy(static_cast<void *>(target), from, static_cast<std::size_t>(size));
         }
     }
-    static_cast<void>(size);
 }
 
 /* What elements are that lie one behind the other: those that an iterator reaches do not. */
