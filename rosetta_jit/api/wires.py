@@ -163,7 +163,7 @@ class Decoders(_Programs[Decoder]):
     @property
     def holder(self) -> Any:
         """The holder that the decoders fill where they are given none: that of the thread that decodes first."""
-        return shared_of(self._first)[1]
+        return shared_of(self._first).holder
 
     @property
     def ages(self) -> dict[str, int | None]:
@@ -174,7 +174,7 @@ class Decoders(_Programs[Decoder]):
         InUse
             Another thread's call has not returned.
         """
-        registers = shared_of(self._first)[0]
+        registers = shared_of(self._first).registers
         return {} if registers is None else ages(registers.shown(), list(self))
 
     @property
@@ -185,8 +185,8 @@ class Decoders(_Programs[Decoder]):
     @property
     def missing(self) -> tuple[str, ...]:
         """The wires without a message so far, and those whose last message was refused: without any, `holder` is complete."""
-        _, holder, owners = shared_of(self._first)
-        broken = set[int]() if holder.lanes_.words[VALID] else owners.get("broken", {}).get(holder.lanes_, set[int]())
+        lanes, owners = self.holder.lanes_, shared_of(self._first).owners
+        broken = set[int]() if lanes.words[VALID] else owners.get("broken", {}).get(lanes, set[int]())
         return tuple(wire for number, (wire, age) in enumerate(self.ages.items()) if age is None or number in broken)
 
     def reset(self) -> None:

@@ -16,7 +16,7 @@ from rosetta_jit.errors import DecodeError, EncodeError, InUse
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, GROW, NUMBER, USED, lane_word
 from rosetta_jit.model.layout import Layout
 from rosetta_jit.runtime import run
-from rosetta_jit.runtime.callable import Context, bind_call
+from rosetta_jit.runtime.callable import Context, bind_call, give_own
 from rosetta_jit.runtime.code.native import Library
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_SPARES
@@ -89,10 +89,9 @@ class BridgeBase(ProgramBase):
         self._loaded, self._asks, self._registers = loaded, loaded.asks_host, loaded.state.registers()
         self._lanes = Lanes.of(loaded.layout)
         self._spares: list[Lanes] = []
-        kept: list[object] = [loaded, self._registers]
-        address = address_of(self._registers)
-        context = Context(self._lanes.state, self._lanes, self._call_slowly, self._lanes.source, Lanes, address, kept)
+        context = Context(self._call_slowly, Lanes, address_of(self._registers), [loaded, self._registers])
         bind_call(self, entry_of(loaded.library, loaded.state), context)
+        give_own(self, self._lanes, self._lanes.state, self._lanes.source)
 
     @property
     def state(self) -> Mapping[str, Mapping[str, bool | int | float]]:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rosetta_jit.kernel.state import state_words
 from rosetta_jit.runtime import type_specs
 from rosetta_jit.startup.dataclass import dataclass, field
 
@@ -25,10 +26,14 @@ if TYPE_CHECKING:
     Words = np.ndarray[tuple[int], np.dtype[np.int64]]
 
 VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80
+OWN_STATE, OWN_HOLDER, OWN_CELL = 0, 1, 3
 MADE, THREAD, REGISTERS, FAILED, OTHERS = 5, 6, 7, 8, 9
 """Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0; the
 address of its registers, or 0; 1 where an entry comes to the slow path because the kernel for one of several wires has failed; of an
 encoder, the address of three words, or 0: a class of other objects, what is called with one of them, and what calls that."""
+
+NOBODYS = np.full(state_words(0), -1, np.int64)
+"""The state of a program that has no holder of its own: always in use, by its epoch."""
 
 STATE, INDEX, MESSAGE_BYTES = 16, 56, 72
 ALWAYS, NEVER = -(1 << 63), 1 - (1 << 63)
@@ -37,18 +42,12 @@ ALWAYS, NEVER = -(1 << 63), 1 - (1 << 63)
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What an entry needs, in the order of its words.
+    """What an entry needs of its program.
 
     Attributes
     ----------
-    state
-        State of the program's own holder, int64. Word 0 is its address.
-    holder
-        The program's own holder, which a decoder returns.
     slow
         Called with the arguments of every call that is not the common case.
-    cell
-        A list of one item, the source of borrowed values.
     holder_type
         The exact type of holders that the entry takes.
     registers
@@ -57,20 +56,14 @@ class Context:
         What else compiled code has addresses of: the code itself, and what the program adds later.
     """
 
-    state: Words
-    holder: object
     slow: Callable[..., object]
-    cell: list[object]
     holder_type: type
     registers: int = 0
     kept: list[object] = field(default_factory=list[object])
 
     def words(self) -> Words:
         """The array that the entry reads, and where it counts. It borrows every reference: `self` must live as long."""
-        return np.array(
-            [self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0, 0, self.registers, 0, 0],
-            np.int64,
-        )
+        return np.array([NOBODYS.ctypes.data, 0, id(self.slow), 0, id(self.holder_type), 0, 0, self.registers, 0, 0], np.int64)
 
 
 def is_native() -> bool:
@@ -139,6 +132,21 @@ def bind_call(target: Any, entry: int | None, context: Context) -> None:
     else:
         type_specs.write_word(id(target) + CONTEXT, words.ctypes.data)
         type_specs.write_word(id(target) + VECTORCALL, entry)
+
+
+def give_own(target: Any, holder: object, state: Words, cell: list[object]) -> None:
+    """Let calls of a bound ``target`` that name no holder fill this one, the target's own.
+
+    Parameters
+    ----------
+    state
+        The holder's state, int64. Word 0 is its address.
+    cell
+        A list of one item, the source of borrowed values.
+    """
+    context, words = target._context  # noqa: SLF001 - the class is ours
+    context.kept.append((holder, state, cell))
+    words[OWN_STATE], words[OWN_HOLDER], words[OWN_CELL] = state.ctypes.data, id(holder), id(cell)
 
 
 def builtin_of(target: Any, name: str, doc: str) -> Callable[..., Any]:

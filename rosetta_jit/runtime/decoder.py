@@ -13,7 +13,7 @@ from rosetta_jit.kernel.state import CLEAN, NUMBER, RESULT, UNUSUAL, VALID
 from rosetta_jit.runtime import run
 from rosetta_jit.runtime.attributes.code import functions, library
 from rosetta_jit.runtime.attributes.methods import turning
-from rosetta_jit.runtime.callable import FAILED, THREAD
+from rosetta_jit.runtime.callable import FAILED, THREAD, give_own
 from rosetta_jit.runtime.holder import Holder
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_CLASSES
@@ -45,7 +45,8 @@ _Object = TypeVar("_Object")
 class DecoderBase(Program):
     """Decodes messages of one wire into holders of one type.
 
-    The decoder's own holder belongs to the thread that decodes first; each other thread has another one, as long as it lives.
+    The decoder's own holder is made for the thread that decodes first, and belongs to it. Each other thread has another one, as long as it
+    lives.
     """
 
     _arguments = "message", {"holder": None}
@@ -206,7 +207,7 @@ class DecoderBase(Program):
         loaded = self._loaded
         if library() is None or loaded.library is None or loaded.borrow or loaded.asks_host:
             return None
-        return partial(functions()["fill_rows"], struct.pack("=2q", loaded.library["many"], len(self._holder.lanes_.plan.strides)))
+        return partial(functions()["fill_rows"], struct.pack("=2q", loaded.library["many"], len(loaded.holder_type.family_.plan.strides)))
 
     def _go_on(self, batch: Batch, lanes: Lanes, messages: Any, offsets: Any, on_error: OnError, done: int) -> None:
         """Inside ``with lanes:``, decode messages step by step, behind so many that are."""
@@ -278,7 +279,7 @@ class DecoderBase(Program):
             self._need_rest()
         if len(arguments) == 1 and self._context[1][THREAD] != get_ident():
             return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
-        holder = self._holder if len(arguments) == 1 else self._checked(arguments[1])
+        holder = self._shared.holder if len(arguments) == 1 else self._checked(arguments[1])
         source, before = message_spans.source_of(message), holder.lanes_.source[0]
         data, is_left_to_next = run.readable(source), holder.lanes_.words[RESULT] == UNUSUAL
         if self._loaded.wire is not None:
@@ -331,7 +332,7 @@ class DecoderBase(Program):
 
         words = self._context[1]
         has_failed, words[FAILED] = bool(words[FAILED]), 0
-        broken = broken_wires(self._owners.setdefault("broken", WeakKeyDictionary()), holder)
+        broken = broken_wires(self._shared.owners.setdefault("broken", WeakKeyDictionary()), holder)
         with holder.lanes_ as lanes, self._numbered(lanes), joining(holder, wire, broken, has_failed=has_failed):
             self._decode(data, lanes)
 
@@ -355,8 +356,10 @@ class DecoderBase(Program):
     def _becomes_mine(self) -> bool:
         """Let the decoder's own holder belong to this thread, if it belongs to none: in one step, which dicts have."""
         thread = get_ident()
-        if self._owners.setdefault("first", thread) != thread:
+        if self._shared.owners.setdefault("first", thread) != thread:
             return False
+        holder = self._shared.holder
+        give_own(self, holder, holder.lanes_.state, holder.lanes_.source)
         self._context[1][THREAD] = thread
         return True
 
@@ -364,7 +367,7 @@ class DecoderBase(Program):
         """The holder of this thread: the decoder's own, or one that stands for it."""
         from threading import local
 
-        holders = self._owners.setdefault("others", local())
+        holders = self._shared.owners.setdefault("others", local())
         if not hasattr(holders, "own"):
             holders.own = self.new()
         return holders.own

@@ -197,12 +197,27 @@ class ProgramBase:
         return builtin_of(self, "builtin", "What calling its __self__ does.")
 
 
+class Shared:
+    """What programs for several wires of a mapping have together."""
+
+    def __init__(self, loaded: Loaded) -> None:
+        self._holder_type = loaded.holder_type
+        self.registers = loaded.state.registers()
+        """What they keep from message to message."""
+        self.owners: dict[str, Any] = {}
+        """Which threads have which holder."""
+
+    @cached_property
+    def holder(self) -> Holder:
+        """The own holder, made for the first message: who decodes into other holders, and who encodes, needs none."""
+        return type.__call__(self._holder_type)  # one holder is not worth the time to compile how classes are called
+
+
 class Program(ProgramBase):
     """What decoders and encoders share."""
 
     _loaded: Loaded
-    _holder: Holder
-    _owners: dict[str, Any]
+    _shared: Shared
     _plan: Plan
 
     def _bind(self, loaded: Loaded, slow: Callable[..., object], beside: Program | None = None) -> None:
@@ -210,27 +225,18 @@ class Program(ProgramBase):
         if "_loaded" in vars(self):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
         self._loaded, self._asks = loaded, loaded.asks_host
-        if beside is None:
-            made = type.__call__(loaded.holder_type)  # one holder is not worth the time to compile how classes are called
-            self._registers, self._holder, self._owners = loaded.state.registers(), made, {}
-        else:
-            self._registers, self._holder, self._owners = shared_of(beside)
+        self._shared = Shared(loaded) if beside is None else shared_of(beside)
+        self._registers = self._shared.registers
         self._plan = loaded.holder_type.family_.plan
         if library() is not None:
             vars(self)["new"] = maker(loaded.holder_type, self._plan)
-        lanes = self._holder.lanes_
-        kept: list[object] = [loaded, self._registers]
-        context = Context(lanes.state, self._holder, slow, lanes.source, loaded.holder_type, address_of(self._registers), kept)
+        context = Context(slow, loaded.holder_type, address_of(self._registers), [loaded, self._registers])
         bind_call(self, entry_of(loaded.library, loaded.state), context)
 
     @property
     def _wires(self) -> tuple[str, ...]:
         """The names of the mapping's wires, where it has several."""
         return self._loaded.wires
-
-    def _shared(self) -> tuple[Registers | None, Holder, dict[str, Any]]:
-        """What programs for several wires have together: registers, the own holder, and which threads have which holder."""
-        return self._registers, self._holder, self._owners
 
     @property
     def state(self) -> Mapping[str, bool | int | float]:
@@ -347,9 +353,9 @@ def wires_of(program: Program) -> tuple[str, ...]:
     return program._wires  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]
 
 
-def shared_of(program: Program) -> tuple[Registers | None, Holder, dict[str, Any]]:
-    """What programs for several wires have together: registers, the own holder, and which threads have which holder."""
-    return program._shared()  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]
+def shared_of(program: Program) -> Shared:
+    """What a program has together with those for other wires of its mapping."""
+    return program._shared  # noqa: SLF001 # pyright: ignore[reportPrivateUsage]
 
 
 def make_rest(program: Program) -> None:

@@ -393,6 +393,7 @@ class Last:
 
 
 decode = rj.Decoder("yarp/icub/torso_state.mapping", encoding="yarp3")
+decode(MESSAGE)  # the holder that it fills is made by the first message, which numpy cannot do so late
 builtins.last, of_the_module, sys.modules["last"] = Last(decode), Last(decode), Last(decode)
 in_a_cycle = Last(decode)
 in_a_cycle.itself = in_a_cycle

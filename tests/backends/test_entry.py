@@ -14,7 +14,7 @@ import pytest
 from rosetta_jit.backends.entry.link import compile_program
 from rosetta_jit.kernel.entries import SYMBOLS
 from rosetta_jit.kernel.state import EPOCH, LANES, RESULT, USED, VALID, lane_word
-from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, is_native, message_base
+from rosetta_jit.runtime.callable import THREAD, Context, bind_call, bind_state, callable_class, give_own, is_native, message_base
 from rosetta_jit.runtime.code import native
 from rosetta_jit.runtime.message_spans import MessageSpans
 from rosetta_jit.runtime.program import MANY
@@ -52,7 +52,8 @@ Native = callable_class(Program)
 
 def program(definition, entry, **options):
     made = Native(definition, entry, **options)
-    bind_call(made, made.library["call"], Context(made.rows.state, made.holder, made.slow, made.cell, Holder))
+    bind_call(made, made.library["call"], Context(made.slow, Holder))
+    give_own(made, made.holder, made.rows.state, made.cell)
     made._context[1][THREAD] = get_ident()
     return made
 

@@ -142,5 +142,5 @@ def test_elements_without_bytes(encoding):
     except rj.DecodeError as error:
         kinds.append(error.kind)
     assert kinds in ([], ["count"], ["truncated"])
-    assert size(decode._holder) < 2 * GRACE_BYTES + 64 * ELEMENTS_A_BYTE * len(data)
+    assert size(decode._shared.holder) < 2 * GRACE_BYTES + 64 * ELEMENTS_A_BYTE * len(data)
     assert time.process_time() - start < 10

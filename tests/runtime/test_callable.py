@@ -23,7 +23,7 @@ class Program:
 
 
 def context(slow):
-    return Context(np.zeros(16, np.int64), object(), slow, [None], object)
+    return Context(slow, object)
 
 
 @pytest.mark.parametrize("native", [False, None])

@@ -271,7 +271,7 @@ def test_what_no_body_takes_is_told_in_the_same_words_and_has_nothing_made(bottl
                 decode(message)
             words.append(str(error.value))
             with pytest.raises(rj.InvalidHolder):
-                _ = decode._holder.d0
+                _ = decode._shared.holder.d0
         return words
 
     assert doubles(decode(usual)) == numbers
