@@ -1,1 +1,1 @@
-"""Many messages at once: `filling` a `batch` from them, its `columns`, and its `parts`."""
+"""Many messages at once: `filling` a `batch` from them, its `columns`, its `tables`, and its `parts`."""
