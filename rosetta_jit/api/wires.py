@@ -185,8 +185,8 @@ class Decoders(_Programs[Decoder]):
     @property
     def missing(self) -> tuple[str, ...]:
         """The wires without a message so far, and those whose last message was refused: without any, `holder` is complete."""
-        lanes, owners = self.holder.lanes_, shared_of(self._first).owners
-        broken = set[int]() if lanes.words[VALID] else owners.get("broken", {}).get(lanes, set[int]())
+        lanes = self.holder.lanes_
+        broken = set[int]() if lanes.words[VALID] else shared_of(self._first).broken.get(lanes, set[int]())
         return tuple(wire for number, (wire, age) in enumerate(self.ages.items()) if age is None or number in broken)
 
     def reset(self) -> None:

@@ -7,7 +7,6 @@ from _thread import get_ident
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar, overload
-from weakref import WeakKeyDictionary
 
 from rosetta_jit.kernel.state import CLEAN, NUMBER, RESULT, UNUSUAL, VALID
 from rosetta_jit.runtime import run
@@ -278,7 +277,7 @@ class DecoderBase(Program):
         if len(arguments) == 2 or type(message) is not bytes:
             self._need_rest()
         if len(arguments) == 1 and self._context[1][THREAD] != get_ident():
-            return self(message) if self._becomes_mine() else self(message, self._holder_of_thread())
+            return self(message) if self._becomes_mine() else self(message, self._shared.of_this_thread(self.new))
         holder = self._shared.holder if len(arguments) == 1 else self._checked(arguments[1])
         source, before = message_spans.source_of(message), holder.lanes_.source[0]
         data, is_left_to_next = run.readable(source), holder.lanes_.words[RESULT] == UNUSUAL
@@ -332,7 +331,7 @@ class DecoderBase(Program):
 
         words = self._context[1]
         has_failed, words[FAILED] = bool(words[FAILED]), 0
-        broken = broken_wires(self._shared.owners.setdefault("broken", WeakKeyDictionary()), holder)
+        broken = broken_wires(self._shared.broken, holder)
         with holder.lanes_ as lanes, self._numbered(lanes), joining(holder, wire, broken, has_failed=has_failed):
             self._decode(data, lanes)
 
@@ -354,23 +353,14 @@ class DecoderBase(Program):
             raise ValueError(NOT_WHOLE.format(how))
 
     def _becomes_mine(self) -> bool:
-        """Let the decoder's own holder belong to this thread, if it belongs to none: in one step, which dicts have."""
+        """Let the decoder's own holder belong to this thread, if it belongs to no other."""
         thread = get_ident()
-        if self._shared.owners.setdefault("first", thread) != thread:
+        if not self._shared.is_of(thread):
             return False
         holder = self._shared.holder
         give_own(self, holder, holder.lanes_.state, holder.lanes_.source)
         self._context[1][THREAD] = thread
         return True
-
-    def _holder_of_thread(self) -> Holder:
-        """The holder of this thread: the decoder's own, or one that stands for it."""
-        from threading import local
-
-        holders = self._shared.owners.setdefault("others", local())
-        if not hasattr(holders, "own"):
-            holders.own = self.new()
-        return holders.own
 
 
 # --- what other modules need of a decoder, and users do not -------------------------------------------------------------

@@ -24,6 +24,7 @@ from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_SPARES
 from rosetta_jit.runtime.memory_plan import Plan
 from rosetta_jit.runtime.registers import NOTHING_KEPT, Kept, Registers, address_of
+from rosetta_jit.runtime.shared import Shared
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -197,22 +198,6 @@ class ProgramBase:
         return builtin_of(self, "builtin", "What calling its __self__ does.")
 
 
-class Shared:
-    """What programs for several wires of a mapping have together."""
-
-    def __init__(self, loaded: Loaded) -> None:
-        self._holder_type = loaded.holder_type
-        self.registers = loaded.state.registers()
-        """What they keep from message to message."""
-        self.owners: dict[str, Any] = {}
-        """Which threads have which holder."""
-
-    @cached_property
-    def holder(self) -> Holder:
-        """The own holder, made for the first message: who decodes into other holders, and who encodes, needs none."""
-        return type.__call__(self._holder_type)  # one holder is not worth the time to compile how classes are called
-
-
 class Program(ProgramBase):
     """What decoders and encoders share."""
 
@@ -225,7 +210,7 @@ class Program(ProgramBase):
         if "_loaded" in vars(self):
             raise TypeError(f"this {type(self).__name__} is made already: its code may be running")
         self._loaded, self._asks = loaded, loaded.asks_host
-        self._shared = Shared(loaded) if beside is None else shared_of(beside)
+        self._shared = Shared(loaded.holder_type, loaded.state.registers()) if beside is None else shared_of(beside)
         self._registers = self._shared.registers
         self._plan = loaded.holder_type.family_.plan
         if library() is not None:
