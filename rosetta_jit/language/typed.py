@@ -16,7 +16,7 @@ text is checked, and a length that the target fixes is checked.
 from __future__ import annotations
 
 from typing import Literal as OneOf
-from typing import TypeAlias
+from typing import TypeAlias, Union
 
 from rosetta_jit.model.expr import Operator, Side
 from rosetta_jit.model.rules import Assign, Default, For, Ignore, Reject, SetLength, SetState, When
@@ -326,13 +326,13 @@ Change = Rescale | EachElement | EachMember
 
 
 Assignment: TypeAlias = Assign[Place, Expr, Change]
-Rule: TypeAlias = (
-    Assignment
-    | SetLength[Place, Expr]
-    | For["Rule", Expr]
-    | When["Rule", Expr]
-    | Reject[Expr]
-    | Ignore[Place]
-    | Default[Place]
-    | SetState[StateVariable, Expr]
-)
+Rule: TypeAlias = Union[  # noqa: UP007 - as of rules that have no types yet
+    Assignment,
+    SetLength[Place, Expr],
+    For["Rule", Expr],
+    When["Rule", Expr],
+    Reject[Expr],
+    Ignore[Place],
+    Default[Place],
+    SetState[StateVariable, Expr],
+]

@@ -12,14 +12,15 @@ from rosetta_jit.language.limits import MAX_NAME
 from rosetta_jit.model.mapping import Mapping
 from rosetta_jit.model.types import Schema, Struct, name_parts
 
-QUALIFIED = re.compile(r"[A-Za-z][A-Za-z0-9_]*(?:\.[A-Za-z][A-Za-z0-9_]*)+")
+QUALIFIED = r"[A-Za-z][A-Za-z0-9_]*(?:\.[A-Za-z][A-Za-z0-9_]*)+"
+LETTERS = frozenset("abcdefghijklmnopqrstuvwxyz0123456789")
 
 
 def misnamed(mapping: Mapping, schema: Schema) -> Iterator[Diagnostic]:
     """A warning where the name of the file is, or has in it, the name of a type that is neither side's."""
     stem = PurePath(mapping.source.name).name.removesuffix(".mapping")[:MAX_NAME]
     mine = [name_parts(each) for each in (mapping.holder_type, mapping.wire_type, *(wire.type for wire in mapping.wires))]
-    for qualified in QUALIFIED.findall(stem):
+    for qualified in re.findall(QUALIFIED, stem) if "." in stem else ():
         parts = name_parts(qualified)
         if not any(_plain(parts) == _plain(own[-len(parts) :]) for own in mine):
             yield words.misnamed(mapping.holder_span, qualified, mapping.holder_type, mapping.wire_type)
@@ -32,4 +33,4 @@ def misnamed(mapping: Mapping, schema: Schema) -> Iterator[Diagnostic]:
 
 def _plain(parts: tuple[str, ...]) -> str:
     """A name without what files write differently: `joint_angles` and `JointAngles` are one."""
-    return ".".join(re.sub(r"[^a-z0-9]", "", part.lower()) for part in parts)
+    return ".".join("".join(filter(LETTERS.__contains__, part.lower())) for part in parts)

@@ -176,6 +176,8 @@ def _text(tree: Tree, context: Context) -> str:
 def read_string(token: Token, source: Source, problems: list[Diagnostic]) -> str:
     """The characters that a quoted text stands for."""
     text = str(token)[1:-1]
+    if "\\" not in text:
+        return text
     start = token.start_pos + 1
     problems.extend(
         words.escape(Span(source, start + escape.start(), start + escape.end()), escape[0])

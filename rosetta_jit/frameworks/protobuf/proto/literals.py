@@ -36,6 +36,8 @@ def string(text: str) -> bytes:
 
 def unescape(text: str) -> bytes:
     """Replace C escapes; everything else is UTF-8; raises EscapeError."""
+    if "\\" not in text:
+        return text.encode("utf-8", "surrogatepass")
     out = bytearray()
     end = 0
     for match in re.finditer(ESCAPE, text):

@@ -126,10 +126,15 @@ def _grammar() -> Grammar:
     return parser_of(GRAMMAR)
 
 
+def _text(quoted: str) -> str:
+    """What stands between quotes, without the backslashes before other characters."""
+    return re.sub(r"\\(.)", _unescape, quoted, flags=re.DOTALL) if "\\" in quoted else quoted
+
+
 def _atom(token: Token, span: Span) -> Node:
     match token.type:
         case "TEXT":
-            return Text(re.sub(r"\\(.)", _unescape, token[1:-1], flags=re.DOTALL), span)
+            return Text(_text(token[1:-1]), span)
         case "VOCAB":
             return Vocab(token[2:-1], span)
         case "NUMBER":
