@@ -28,7 +28,8 @@ VECTORCALL, CONTEXT, CALLABLE_BYTES = 64, 72, 80
 MADE, THREAD, REGISTERS, FAILED, OTHERS = 5, 6, 7, 8, 9
 """Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0; the
 address of its registers, or 0; 1 where an entry comes to the slow path because the kernel for one of several wires has failed; of an
-encoder, the address of three words, or 0: a class of other objects, what is called with one of them, and what calls that."""
+encoder, the address of three words, or 0: a class of other objects, what is called with one of them, and what calls that. Behind these
+are two words that only entries use: of an encoder, the list with the number that it last gave, and that number."""
 
 STATE, INDEX, MESSAGE_BYTES = 16, 56, 72
 ALWAYS, NEVER = -(1 << 63), 1 - (1 << 63)
@@ -55,6 +56,8 @@ class Context:
         Their address, 0 where there are none.
     kept
         What else compiled code has addresses of: the code itself, and what the program adds later.
+    last
+        A list of one item: the number that an encoder last gave, where a message ended.
     """
 
     state: Words
@@ -64,13 +67,12 @@ class Context:
     holder_type: type
     registers: int = 0
     kept: list[object] = field(default_factory=list[object])
+    last: list[int] = field(default_factory=lambda: [0])
 
     def words(self) -> Words:
         """The array that the entry reads, and where it counts. It borrows every reference: `self` must live as long."""
-        return np.array(
-            [self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type), 0, 0, self.registers, 0, 0],
-            np.int64,
-        )
+        lanes = self.state.ctypes.data, id(self.holder), id(self.slow), id(self.cell), id(self.holder_type)
+        return np.array([*lanes, 0, 0, self.registers, 0, 0, id(self.last), 0], np.int64)
 
 
 def is_native() -> bool:
