@@ -30,6 +30,12 @@ MAX_PIECE = 128
 MAX_PIECES = 8
 """such moves that a run of fields becomes; a longer run is moved by a loop"""
 
+MAX_PASSED = 12
+"""statements between loops that become one"""
+
+MAX_STREAMS = 6
+"""arrays that such a loop goes through: the nearest cache of many processors has room for eight that begin at one place of a page"""
+
 MAX_HOISTED_NODES = 64
 """operators of a position that is computed before its loop"""
 

@@ -60,7 +60,7 @@ def are_straight_and_compute(kernels: Iterable[ir.Kernel]) -> bool:
 
 def has_loops_for_vectors(kernel: ir.Kernel) -> bool:
     """Whether a kernel has, in the first of its bodies, loops over elements that do nothing but compute, and store or add integers."""
-    return any(isinstance(each, nodes.For) and _only_stores(each.body) for each in _usual_statements(kernel))
+    return any(isinstance(each, nodes.For) and is_for_vectors(each.body) for each in _usual_statements(kernel))
 
 
 def is_moderate(kernel: ir.Kernel) -> bool:
@@ -68,7 +68,8 @@ def is_moderate(kernel: ir.Kernel) -> bool:
     return not _are_more(_usual_statements(kernel), MODERATE)
 
 
-def _only_stores(block: nodes.Block) -> bool:
+def is_for_vectors(block: nodes.Block) -> bool:
+    """Whether a loop's body does nothing but compute, and store or add integers."""
     return all(isinstance(each, nodes.Let | nodes.Store | nodes.SetField) or _gathers_integers(each) for each in block)
 
 

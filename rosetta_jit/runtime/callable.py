@@ -30,7 +30,8 @@ OWN_STATE, OWN_HOLDER, OWN_CELL = 0, 1, 3
 MADE, THREAD, REGISTERS, FAILED, OTHERS = 5, 6, 7, 8, 9
 """Words of a program's context: how many messages it has made, if its kernel asks; the thread that its own holder belongs to, or 0; the
 address of its registers, or 0; 1 where an entry comes to the slow path because the kernel for one of several wires has failed; of an
-encoder, the address of three words, or 0: a class of other objects, what is called with one of them, and what calls that."""
+encoder, the address of three words, or 0: a class of other objects, what is called with one of them, and what calls that. Behind these
+are two words that only entries use: of an encoder, the list with the number that it last gave, and that number."""
 
 NOBODYS = np.full(state_words(0), -1, np.int64)
 """The state of a program that has no holder of its own: always in use, by its epoch."""
@@ -54,16 +55,20 @@ class Context:
         Their address, 0 where there are none.
     kept
         What else compiled code has addresses of: the code itself, and what the program adds later.
+    last
+        A list of one item: the number that an encoder last gave, where a message ended.
     """
 
     slow: Callable[..., object]
     holder_type: type
     registers: int = 0
     kept: list[object] = field(default_factory=list[object])
+    last: list[int] = field(default_factory=lambda: [0])
 
     def words(self) -> Words:
         """The array that the entry reads, and where it counts. It borrows every reference: `self` must live as long."""
-        return np.array([NOBODYS.ctypes.data, 0, id(self.slow), 0, id(self.holder_type), 0, 0, self.registers, 0, 0], np.int64)
+        own = NOBODYS.ctypes.data, 0, id(self.slow), 0, id(self.holder_type)
+        return np.array([*own, 0, 0, self.registers, 0, 0, id(self.last), 0], np.int64)
 
 
 def is_native() -> bool:

@@ -200,6 +200,32 @@ def test_encodes(count):
     assert space == bytes(7) + expected + bytes(493 - len(expected))
 
 
+def test_the_number_of_the_call_before_is_given_again_and_kept_once():
+    encode, space, size = encoder(40), bytearray(2000), 4 + 8 * 40
+    first = encode(encode.holder, space, 0)
+    assert encode(encode.holder, space, 0) is first
+    references = sys.getrefcount(first)
+    again = [encode(encode.holder, space, 0) for _ in range(50)]
+    assert sys.getrefcount(first) == references + 50
+    del again
+    assert sys.getrefcount(first) == references
+    for start in (500, 0, 7, 500, 500, 1000):
+        assert encode(encode.holder, space, start) == start + size
+    assert sys.getrefcount(first) == references - 1
+    del encode
+    gc.collect()
+    assert first == size
+
+
+def test_the_numbers_of_many_ends_leave_nothing_behind():
+    encode, space = encoder(40), bytearray(20_000)
+    encode(encode.holder, space, 0)
+    before = sys.getallocatedblocks()
+    for start in range(10_000):
+        encode(encode.holder, space, start)
+    assert sys.getallocatedblocks() - before < 100
+
+
 @pytest.mark.parametrize("arguments", [(), (bytearray(100),), (bytearray(100), 0)])
 def test_a_holder_in_use_is_not_encoded(arguments):
     encode = encoder()

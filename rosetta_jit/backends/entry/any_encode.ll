@@ -87,9 +87,8 @@ judge:
   %filled = icmp sge i64 %end, 0
   br i1 %filled, label %position, label %failed, !prof !0
 position:
-  %end.object = call ptr @PyLong_FromSsize_t(i64 %end)
+  %end.object = call ptr @number_of(ptr %context, i64 %end)
   ret ptr %end.object
-
 failed:
   call void @untell(ptr %context, ptr %state)
   call void @note(i64 %end, ptr %state)
@@ -99,4 +98,33 @@ slow:
   ret ptr %answer
 raise:
   ret ptr null
+}
+
+; A number as an object, or null if there is no memory for one: the one of the call before, if that has ended at the same place. Messages of one type
+; mostly do, and to make an object and take it apart again takes a fifth of a short call.
+define internal ptr @number_of(ptr %context, i64 %number) alwaysinline {
+  %last.at = getelementptr i64, ptr %context, i64 11
+  %last = load i64, ptr %last.at
+  %cell.at = getelementptr ptr, ptr %context, i64 10
+  %cell = load ptr, ptr %cell.at
+  %items.at = getelementptr i8, ptr %cell, i64 24
+  %items = load ptr, ptr %items.at
+  %before = load ptr, ptr %items
+  %is.same = icmp eq i64 %last, %number
+  br i1 %is.same, label %again, label %new, !prof !1
+again:
+  %same = call ptr @keep_any(ptr %before)
+  ret ptr %same
+new:
+  %made = call ptr @PyLong_FromSsize_t(i64 %number)
+  %there = icmp ne ptr %made, null
+  br i1 %there, label %remember, label %done, !prof !0
+remember:
+  %kept = call ptr @keep_any(ptr %made)
+  store ptr %kept, ptr %items
+  store i64 %number, ptr %last.at
+  call void @drop_any(ptr %before)
+  br label %done
+done:
+  ret ptr %made
 }

@@ -1,11 +1,11 @@
 ; What all entries share. The entries' own files follow this one in one module.
 ;
 ; The context is an array of pointers: 0 state, 1 holder, 2 slow path, 3 source cell, 4 the holder's type (`runtime.callable.Context`; until there
-; is a holder of the program's own, 0 is a state that is in use),
-; 5 the number of messages made, 6 the thread of the program's own holder, 7 the registers, 8 whether a kernel for one of several wires has failed,
-; 9 of an encoder, objects of which other class go where (`any_encode.ll`). A message gets its time and its number in `time_and_number.ll`, or
-; `no_time_or_number.ll` where no kernel asks; what kernels keep for the next message is in `registers.ll`, or `no_registers.ll`. Who may use the
-; program's own holder is asked in `thread_check.ll`.
+; is a holder of the program's own, 0 is a state that is in use), 5 the number of messages made, 6 the thread of the program's own holder,
+; 7 the registers, 8 whether a kernel for one of several wires has failed, 9 of an encoder, objects of which other class go where
+; (`any_encode.ll`), 10 a list with the number that it last gave, 11 that number. A message gets its time and its number in
+; `time_and_number.ll`, or `no_time_or_number.ll` where no kernel asks; what kernels keep for the next message is in `registers.ll`, or
+; `no_registers.ll`. Who may use the program's own holder is asked in `thread_check.ll`.
 ; Who changes lanes in a way that another thread can interrupt makes word 1 of their state negative (`kernel.state.EPOCH`): then entries leave
 ; them to the slow path, which refuses. An entry itself has the interpreter lock; where its kernel may let it go is said in `hosted.ll`.
 ; The slow path is a Python callable for whatever is not the common case. It gets the same arguments, finds the kernel's result in word 9 of

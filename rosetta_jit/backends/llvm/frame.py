@@ -370,6 +370,11 @@ def new_function(module: ir.Module, signature: ir.FunctionType, name: str, argum
     return function
 
 
+def leave_copies(function: ir.Function) -> None:
+    """Have LLVM leave copies in the loops of an empty function: what is nothing but a copy is one already (`kernel.passes.bulk`)."""
+    set[str].add(function.attributes, '"no-builtin-memcpy"')  # llvmlite's own `add` does not know it
+
+
 def state_word(builder: ir.IRBuilder, state: ir.Value, word: int | ir.Value) -> ir.Value:
     """The address of a word of the holder's state."""
     number = constant(word) if isinstance(word, int) else word

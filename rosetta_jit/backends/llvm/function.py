@@ -16,7 +16,19 @@ from llvmlite import ir
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm.alike import NOTHING, Found, may_have_series, may_share
-from rosetta_jit.backends.llvm.frame import COLD, I64, POINTER, Exit, Frame, Parameters, StoredExit, constant, new_function, state_word
+from rosetta_jit.backends.llvm.frame import (
+    COLD,
+    I64,
+    POINTER,
+    Exit,
+    Frame,
+    Parameters,
+    StoredExit,
+    constant,
+    leave_copies,
+    new_function,
+    state_word,
+)
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.routines import Printed, routines_of
 from rosetta_jit.backends.llvm.usual import without_row
@@ -37,7 +49,7 @@ from rosetta_jit.kernel.state import (
     USED,
     lane_word,
 )
-from rosetta_jit.kernel.traits import are_straight_and_compute, is_straight
+from rosetta_jit.kernel.traits import are_straight_and_compute, has_loops_for_vectors, is_straight
 from rosetta_jit.startup.late import late
 
 if TYPE_CHECKING:
@@ -70,6 +82,8 @@ def emit(module: ir.Module, kernel: Kernel, name: str, *, whole: bool = True, ha
     inside = f"{name}.inside" if kernel.hidden else name
     usual = new_function(module, SIGNATURE, f"{name}.usual", ARGUMENTS) if has_usual and len(kernel.bodies) > 1 else None
     function = new_function(module, SIGNATURE, inside, ARGUMENTS)
+    if has_loops_for_vectors(kernel):
+        leave_copies(function)
     following = _following(module, kernel, 1, f"{inside}.next", routines)
     if following is not None and usual is not None:
         following.linkage = following.calling_convention = ""  # others call it, which keep little

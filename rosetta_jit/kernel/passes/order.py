@@ -13,7 +13,7 @@ from rosetta_jit.kernel.passes.gather import gather
 from rosetta_jit.kernel.passes.join import join
 from rosetta_jit.kernel.passes.merge import merge
 from rosetta_jit.kernel.passes.reuse import reuse
-from rosetta_jit.kernel.passes.seldom_needed import bulk, bulk_of_bytes, forget, group, hoist, neglect, sink, unroll
+from rosetta_jit.kernel.passes.seldom_needed import bulk, bulk_of_bytes, forget, fuse, group, hoist, neglect, sink, unroll
 from rosetta_jit.kernel.passes.simplify import simplify
 from rosetta_jit.kernel.proof.verify import VerificationError, check_shape, settled, verify
 from rosetta_jit.kernel.proof.without_checks import is_less
@@ -41,13 +41,14 @@ PASSES: tuple[Pass, ...] = (
     drop,
     bulk,
     simplify,
+    fuse,
     merge,
     gather,
     join,
     sink,
 )
 
-FIELD_BY_FIELD = tuple(each for each in PASSES if each not in (neglect, collect, gather, join))
+FIELD_BY_FIELD = tuple(each for each in PASSES if each not in (neglect, collect, fuse, gather, join))
 """Those for source that people read, and that may see what is done with each field."""
 
 ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in FIELD_BY_FIELD if each is not group)
@@ -55,7 +56,7 @@ ANY_MACHINE = tuple(bulk_of_bytes if each is bulk else each for each in FIELD_BY
 
 
 NEEDS: Mapping[Pass, tuple[type[Stmt], ...]] = {
-    **dict.fromkeys((group, unroll, hoist, bulk, bulk_of_bytes, sink), (For,)),
+    **dict.fromkeys((group, unroll, hoist, bulk, bulk_of_bytes, fuse, sink), (For,)),
     collect: (SetField,),
     merge: (Require,),
     join: (Store, SetField, Copy),

@@ -10,13 +10,14 @@ from rosetta_jit.startup.late import late
 if TYPE_CHECKING:
     from rosetta_jit.kernel.passes import bulk as bulk_passes
     from rosetta_jit.kernel.passes import forget as forgetting
+    from rosetta_jit.kernel.passes import fuse as fusing
     from rosetta_jit.kernel.passes import hoist as hoisting
     from rosetta_jit.kernel.passes import neglect as neglecting
     from rosetta_jit.kernel.passes import sink as sinking
     from rosetta_jit.kernel.passes import unroll as unrolling
 else:
     bulk_passes, hoisting, sinking, unrolling = late("rosetta_jit.kernel.passes", "bulk", "hoist", "sink", "unroll")
-    forgetting, neglecting = late("rosetta_jit.kernel.passes", "forget", "neglect")
+    forgetting, fusing, neglecting = late("rosetta_jit.kernel.passes", "forget", "fuse", "neglect")
 
 
 def group(kernel: Kernel) -> Kernel:
@@ -32,6 +33,11 @@ def bulk(kernel: Kernel) -> Kernel:
 def bulk_of_bytes(kernel: Kernel) -> Kernel:
     """`rosetta_jit.kernel.passes.bulk.bulk_of_bytes`."""
     return bulk_passes.bulk_of_bytes(kernel)
+
+
+def fuse(kernel: Kernel) -> Kernel:
+    """`rosetta_jit.kernel.passes.fuse.fuse`."""
+    return fusing.fuse(kernel)
 
 
 def hoist(kernel: Kernel) -> Kernel:

@@ -45,7 +45,7 @@ class Constant(Value):
 class Argument(Value):
     def add_attribute(self, attr: str) -> None: ...
 
-class AttributeSet:
+class AttributeSet(set[str]):
     def add(self, name: str) -> None: ...
 
 class NameScope:
