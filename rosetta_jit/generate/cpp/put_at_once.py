@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.decided import decided
+from rosetta_jit.generate.c.function import Function
 from rosetta_jit.generate.c.lanes import Given, Lanes
 from rosetta_jit.generate.c.scope import Scope
-from rosetta_jit.generate.c.statements import Function, print_block
+from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.always import is_plain, numbers
 from rosetta_jit.generate.cpp.at_once import MOST, PARAMETERS, SHARED, are_marked, check, is_shared

@@ -18,6 +18,7 @@ from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
 from rosetta_jit.generate.cpp.header import AtOnce, filled_in
 from rosetta_jit.generate.cpp.lists import row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
+from rosetta_jit.generate.cpp.messages_within import classes, collecting, collectors
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import (
@@ -90,10 +91,11 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: K
         includes=_includes(called),
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
-        holder=_row_structs(walks["encode"], [*views, *filled])
+        holder=classes(walks["encode"])
+        + _row_structs(walks["encode"], [*views, *filled])
         + ("" if decoder is None else packed_structs(walks["decode"], decoder, opened))
         + _holder(unit, parts, given, containers, listed, kinds, kinds.keys() & copied(parts, directs["encode"], walks["encode"]))
-        + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
+        + (source_struct(unit, parts, directs["encode"], walks["encode"]) + collectors(walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels=_kernels(unit, parts),
         walks=between,
@@ -226,10 +228,12 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
         head = f"template <class Target>\nvoid {function}({parameters})"
         target, unused = "target", ("from", "bytes", "row", "target")
     else:
-        reached = f"to.{parts.lanes.rows(lane)}.rows[at].value" if lane else "row"
-        last = "std::int64_t at" if lane else f"{row} &row"
+        is_taken = lane and lane not in walk.visited
+        reached = f"to.{parts.lanes.rows(lane)}.rows[at].value" if is_taken else "row"
+        last = "std::int64_t at" if is_taken else f"{row} &row"
         head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_source &to, {last})"
-        target, unused = "source", ("source", "to", "at" if lane else "row")
+        head = head if lane not in walk.visited else collecting(walk, lane)
+        target, unused = "source", ("source", "to", "at" if is_taken else "row")
     walk.writer.lines, walk.writer.depth, walk.depth, walk.in_rows = [], 1, 0, 1 if lane else 0
     walk.share = unit.shares.get(role, WHOLE)
     for each in unused:

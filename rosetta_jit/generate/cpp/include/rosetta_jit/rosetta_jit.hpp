@@ -1610,6 +1610,38 @@ template <class Span, class Container> ROSETTA_JIT_INLINE void point_list(Span &
     span.count = count_of(from);
 }
 
+/* A message within another, by its address. */
+template <class Span, class Object> ROSETTA_JIT_INLINE void point_object(Span &span, const Object &from)
+{
+    span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(std::addressof(from)));
+    span.count = 1;
+}
+
+/* The messages of a list that `point_list` has pointed to. */
+template <class Container> struct objects {
+    using type = element_type<Container>;
+
+    ROSETTA_JIT_INLINE static const type &at(std::int64_t address, std::int64_t index)
+    {
+        const std::uintptr_t start = static_cast<std::uintptr_t>(address);
+        if constexpr (lie_in_order<Container>::value) {
+            return reinterpret_cast<const type *>(start)[index];
+        } else {
+            return std::begin(*reinterpret_cast<const Container *>(start))[static_cast<std::ptrdiff_t>(index)];
+        }
+    }
+};
+
+/* The one that `point_object` has pointed to. */
+template <class Object> struct object {
+    using type = Object;
+
+    ROSETTA_JIT_INLINE static const type &at(std::int64_t address, std::int64_t index)
+    {
+        return reinterpret_cast<const type *>(static_cast<std::uintptr_t>(address))[index];
+    }
+};
+
 /* To write a message: rows that are the elements of a container; or anywhere in memory, by their addresses. */
 template <class Row> struct shown {
     Row *rows = nullptr;
