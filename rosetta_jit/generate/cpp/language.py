@@ -41,7 +41,7 @@ def files(unit: Unit) -> dict[str, str]:
     )
     return {
         f"{unit.name}.hpp": header(unit, manners, there),
-        f"{unit.name}.cpp": source(unit, parts, manners, there, None if decoder is None else decoder[0]),
+        f"{unit.name}.cpp": source(unit, parts, manners, None if decoder is None else decoder[0]),
         SHARED: (INCLUDE / SHARED).read_text("utf-8"),
     }
 

@@ -65,7 +65,7 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
         row=row,
         inline="ROSETTA_JIT_INLINE " if is_straight else "",
         memory=memory,
-        again="try_encode(source, &bytes[0], *size)" if is_straight else f"written(&given, {memory}->message, *{memory}, &bytes[0], *size)",
+        again="encode_any(source, &bytes[0], *size)" if is_straight else f"written(&given, {memory}->message, *{memory}, &bytes[0], *size)",
         local=f"    {row} row;" if is_straight else f"    {row} &row = {memory}->message;",
         clear="" if _is_collected(unit) else "    row = {};",
         reset="\n".join(begun),

@@ -157,11 +157,35 @@ private:
     std::shared_ptr<const rosetta_jit::error> found_;
 };
 
+/* What nothing but its success can be said of. */
+struct done {};
+
+namespace detail {
+
+/* A value or an error as a function returns it in registers: a `result` is made of it, which then has the error. */
+template <class Value> struct [[nodiscard]] outcome {
+    Value value{};
+    const rosetta_jit::error *failed = nullptr;
+
+    outcome(Value found) noexcept : value(found) {}
+    ROSETTA_JIT_COLD outcome(rosetta_jit::error found) : failed(new rosetta_jit::error(std::move(found))) {}
+};
+
+template <> struct [[nodiscard]] outcome<done> {
+    static constexpr done value = {};
+    const rosetta_jit::error *failed = nullptr;
+
+    outcome(done) noexcept {}
+    ROSETTA_JIT_COLD outcome(rosetta_jit::error found) : failed(new rosetta_jit::error(std::move(found))) {}
+};
+} // namespace detail
+
 /* A value or an error, as std::expected of C++23. It is moved, not copied; what it was moved from has a value. */
 template <class Value> class [[nodiscard]] result {
 public:
     result(Value value) : value_(std::move(value)) {}
     result(rosetta_jit::error found) : error_(new rosetta_jit::error(std::move(found))) {}
+    ROSETTA_JIT_INLINE result(detail::outcome<Value> found) noexcept : value_(found.value), error_(found.failed) {}
     ROSETTA_JIT_INLINE result(result &&other) noexcept : value_(std::move(other.value_)), error_(other.error_) { other.error_ = nullptr; }
     result &operator=(result &&other) noexcept
     {
@@ -196,9 +220,6 @@ private:
     Value value_{};
     const rosetta_jit::error *error_ = nullptr;
 };
-
-/* What nothing but its success can be said of. */
-struct done {};
 
 namespace detail {
 
