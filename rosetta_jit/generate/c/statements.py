@@ -94,8 +94,9 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
 
 
 def _bind(function: Function, stmt: nodes.Let | nodes.Var | nodes.Assign) -> None:
-    """A local, if anything reads it."""
-    if stmt.name not in function.read:
+    """A local, if anything reads it; a state of a loop that begins where the message is goes on there."""
+    stays = isinstance(stmt, nodes.Assign) and isinstance(stmt.value, nodes.Local) and stmt.value.name == stmt.name
+    if stmt.name not in function.read or stays:
         return
     name, value = function.scope.locals.identifier(stmt.name), bare(expression(function.scope, function.aligned.get(stmt.name, stmt.value)))
     declared = "" if isinstance(stmt, nodes.Assign) else f"{C_TYPES[type_of(stmt.value)]} "
