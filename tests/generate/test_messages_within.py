@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import shutil
 import struct
 import subprocess
 
@@ -122,3 +123,15 @@ def test_an_object_that_is_too_deep(tmp_path):
         value = {"count": 1, "nodes": [value]}
     with pytest.raises(rj.EncodeError, match=r"nesting: .* `\.nodes\[\]\.nodes`"):
         rj.Encoder.of(type_, **options)(value)
+
+
+ALIKE = "package t; struct node_t { int32_t count; node_t first[count]; node_t second[count]; }"
+
+
+@cpp.needs_cpp
+@pytest.mark.skipif(shutil.which("clang++") is None, reason="clang++ is not installed")
+def test_arrays_one_behind_the_other(tmp_path):
+    """Between them nothing is read, so that a state of the loop begins where the one before ends, which clang would complain of."""
+    options = {"encoding": "lcm", "schema": {"t/x.lcm": ALIKE}}
+    texts = generated(type_request("decode", "t.node_t", options), "cpp", BOTH, "unit", Wishes())
+    cpp.compiled("clang++", tmp_path, cpp.write(tmp_path, texts), "-fsyntax-only")
