@@ -183,7 +183,7 @@ MAY_IMPORT = {
     "logs.converting": LOG_READER | {"logs", "logs.folder_names", "file_errors", "runtime.arrow"},
     "ray": REPORTS | {"logs"},
     "dask": REPORTS | {"logs"},
-    "generate": REPORTS | {"model", "kernel", "language"},
+    "generate": REPORTS | {"model", "kernel", "kernel.passes", "language"},
     "generate.c": PRINTS | {"backends.entry"},
     "generate.cpp": PRINTS | {"generate.c"},
     "generate.python": PRINTS | PYTHON | {"generate.python.decoding", "generate.python.encoding"},

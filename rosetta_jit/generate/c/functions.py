@@ -15,23 +15,26 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.printing import Namespace, Writer, counted_lanes
 from rosetta_jit.generate.c.aligned import as_printed
 from rosetta_jit.generate.c.decided import decided
-from rosetta_jit.generate.c.expressions import constant, expression
+from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.function import Callable, Function
+from rosetta_jit.generate.c.heads import declared, head
 from rosetta_jit.generate.c.positions import is_position, said_by
-from rosetta_jit.generate.c.room import moved
 from rosetta_jit.generate.c.scope import Scope, register_name
 from rosetta_jit.generate.c.state import register_word
-from rosetta_jit.generate.c.statements import Callable, Function, print_block
+from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.varint_loops import called
+from rosetta_jit.generate.c.visited import print_visited, starts_of
 from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.descents import Descents
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import leaves, reached, read_names
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel.ir import Kernel, Routine
-from rosetta_jit.kernel.nodes import Advance, Call, Direction, For, While
+from rosetta_jit.kernel.nodes import Advance, Block, Call, Direction, For, While
 from rosetta_jit.kernel.walk import statements
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
@@ -62,17 +65,17 @@ class Printed:
     named: frozenset[int] = frozenset()
 
 
-def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Origin] = ()) -> Printed:
+def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Origin] = (), descents: Descents | None = None) -> Printed:
     """The functions of a kernel that is for a message alone (`kernel.passes.alone`); their names begin with its role.
 
-    ``origins`` say which lines of the mapping stand beside the statements.
+    ``origins`` say which lines of the mapping stand beside the statements. With ``descents``, functions handle the messages within others.
     """
     writer, support, hidden, named, routines = Writer(), set[str](), set[int](), set[int](), dict[str, Callable]()
     words = lanes.words() | function_names() | {f"{role}_{each.name}" for each in kernel.routines}
     words |= {register_name(number) for number in range(kernel.registers)}
 
-    def scope() -> Scope:
-        return Scope(Namespace(words), lanes, support, hidden, named)
+    def scope(subject: int = 0) -> Scope:
+        return Scope(Namespace(words), replace(lanes, subject=subject), support, hidden, named)
 
     short = _short(kernel) if lanes.dialect == "c++" else frozenset[str]()
     needed = called(kernel) if lanes.dialect == "c++" else frozenset(each.name for each in kernel.routines)
@@ -81,34 +84,38 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
         inline = "ROSETTA_JIT_INLINE " if routine.name in short else ""
         routines[routine.name] = _routine(writer, role, kernel.direction, routine, function, inline)
     numbers = {0: 0}
-    attempts = tuple(
-        _attempt(writer, role, kernel, number, Function(scope(), kernel.sites, routines, numbers=numbers, origins=origins, role=role))
-        for number in range(len(kernel.bodies))
-    )
+
+    def begun(subject: int = 0) -> Function:
+        visits = {} if descents is None else descents.visits
+        return Function(scope(subject), kernel.sites, routines, visits=visits, numbers=numbers, origins=origins, role=role)
+
+    if descents is not None:
+        print_visited(writer, descents, {lane: begun(lane) for lane in descents.rows}, kernel.direction)
+    bodies = kernel.bodies if descents is None else (descents.body,)
+    attempts = tuple(_attempt(writer, role, kernel, number, body, begun()) for number, body in enumerate(bodies))
     return Printed(writer.text(), attempts, tuple(numbers), frozenset(support), frozenset(hidden), frozenset(named))
 
 
-def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, function: Function) -> Attempt:
-    body, scope = reached(decided(kernel.bodies[number])), function.scope
+def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, block: Block, function: Function) -> Attempt:
+    body, scope = reached(decided(block)), function.scope
     advanced = {each.lane for each in (stmt for stmt, _ in statements(body)) if isinstance(each, Advance)}
     counted = [lane for lane in counted_lanes(kernel, body) if lane < scope.lanes.own and not _is_forgotten(scope.lanes, role)]
     finish = {lane: scope.lanes.used(lane) if lane in advanced else "0" for lane in counted}
-    function.read = read_names(as_printed(body))
+    function.read = read_names(as_printed(body), starts_of(function.visits))
     function.finish = tuple(f"{scope.takes('holder')}->{scope.lanes.rows(lane)}.used = {used};" for lane, used in finish.items())
     print_block(function, body)
     if not leaves(body):
         function.line("return INT64_MIN; /* never reached: every path has returned */")
     name = f"{role}_{number + 1}" if len(kernel.bodies) > 1 else f"{role}_message"
     parameters = tuple(each for each in SHARED if each in scope.parameters)
-    declared = ", ".join(_declared(parameters, kernel.direction, scope.lanes)) or "void"
-    _head(writer, f"static int64_t {name}({declared})", scope, kernel.direction)
+    listed = ", ".join(declared(parameters, kernel.direction, scope.lanes)) or "void"
+    head(writer, f"static int64_t {name}({listed})", scope, kernel.direction)
     for each in sorted(scope.registers):
         writer.line(f"    const int64_t {register_name(each)} = {register_word(role, each)};")
     for lane in sorted(scope.counted):
         start = _used_at_start(kernel, scope.lanes, lane)
         writer.line(f"    {'' if lane in advanced else 'const '}int64_t {scope.lanes.used(lane)} = {start};")
-    needless = {moved(scope.lanes, lane) for lane in scope.moved - scope.touched}
-    writer.lines += [*(line for line in function.writer.lines if line.strip() not in needless), "}"]
+    writer.lines += [*function.kept_lines(), "}"]
     return Attempt(name, parameters)
 
 
@@ -147,45 +154,9 @@ def _routine(writer: Writer, role: str, direction: Direction, routine: Routine, 
     parameters = [f"{C_TYPES[each.type]} {own[each.name]}" for each in routine.parameters]
     found = [f"{C_TYPES[each.type]} *found_{scope.locals.identifier(each.name)}" for each in routine.results]
     name = f"{role}_{routine.name}"
-    declared = ", ".join((*_declared(shared, direction, scope.lanes), *parameters, *found)) or "void"
-    _head(writer, f"{inline}static {'int64_t' if fails else 'void'} {name}({declared})", scope, direction)
+    listed = ", ".join((*declared(shared, direction, scope.lanes), *parameters, *found)) or "void"
+    head(writer, f"{inline}static {'int64_t' if fails else 'void'} {name}({listed})", scope, direction)
     writer.lines += [f"    (void){identifier};" for parameter, identifier in own.items() if parameter not in function.read]
     writer.lines += [*function.writer.lines, "}"]
     ensured = said_by(routine.ensures)
     return Callable(name, shared, fails, frozenset(number for number, each in enumerate(routine.results) if is_position(ensured, each)))
-
-
-def _head(writer: Writer, head: str, scope: Scope, direction: Direction) -> None:
-    """The begin of a function, with a pointer to each lane's rows."""
-    if writer.lines:
-        writer.line()
-    writer.line(head)
-    writer.line("{")
-    _tables(writer, scope)
-    for lane in sorted(scope.touched):
-        constant = "const " if lane == 0 and direction != "decode" else ""
-        fixed = "" if lane in scope.moved else " const"
-        writer.line(f"    {constant}{scope.lanes.pointer(lane)}{fixed} {scope.lanes.rows(lane)} = {scope.lanes.member(lane)};")
-
-
-def _tables(writer: Writer, scope: Scope) -> None:
-    """The constants of a function that are tables."""
-    for (type_, values), name in scope.tables.items():
-        texts = [constant(scope, type_, value, wide=True) for value in values]
-        writer.line(f"    static const {C_TYPES[type_]} {name}[{len(values)}] = {{")
-        writer.lines += [f"        {', '.join(texts[at : at + 8])}," for at in range(0, len(texts), 8)]
-        writer.line("    };")
-
-
-def _declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) -> list[str]:
-    reads = direction != "decode"
-    holder = "_source" if reads and lanes.dialect == "c++" else "_holder"
-    kinds = {
-        "holder": f"{'const ' if reads and lanes.dialect == 'c' else ''}{lanes.prefix}{holder} *holder",
-        "given_row": f"const {lanes.type(0)} &given_row",
-        "given_object": f"::{lanes.prefix}::holder &given_object",
-        "bytes": f"{'' if direction == 'encode' else 'const '}unsigned char *restrict bytes",
-        "end": "int64_t end",
-        "failure": "struct failure *failure",
-    }
-    return [kinds[each] for each in parameters]

@@ -106,7 +106,8 @@ class Lanes:
     """Those of a kernel; ``prefix`` begins the names of the header, ``own`` are not hidden. Those of C++ make room for themselves.
 
     The rows of ``addressed`` lanes are bytes anywhere in memory, by their addresses; those of ``viewed`` lanes are made of an object's
-    elements when they are read, and so are those of lists ``within`` others. ``row``: the functions are given the message's row.
+    elements when they are read, and so are those of lists ``within`` others. ``row``: the functions are given the message's row, or that of
+    another lane that is their ``subject``; the rows of ``moving`` lanes may be elsewhere when a function has been called for a message.
     ``straight`` are the fields, by lane and offset, that no row keeps, as an object has them; the rows of ``opened`` lanes are elements of
     the object, and so are those of ``given`` ones, of which each message has one array. ``packed`` are loops that may copy all elements at
     once. ``shared`` begins the names of functions of the support, where they are those of a header. ``forward``: a message is written from
@@ -122,6 +123,8 @@ class Lanes:
     viewed: frozenset[int] = frozenset()
     within: Mapping[int, Within] = field(default_factory=dict[int, "Within"])
     row: bool = False
+    subject: int = 0
+    moving: frozenset[int] = frozenset()
     straight: Mapping[tuple[int, int], Straight] = field(default_factory=dict[tuple[int, int], Straight])
     opened: frozenset[int] = frozenset()
     given: Mapping[int, Given] = field(default_factory=dict[int, "Given"])
@@ -156,7 +159,7 @@ class Lanes:
         """The expression for the rows in the holder."""
         if lane >= self.own:
             return f"holder->scratch[{lane - self.own}].bytes"
-        if lane == 0:
+        if lane == self.subject:
             return "&given_row" if self.row else "&holder->message"
         if lane in self.given:
             return self.given[lane].rows
@@ -177,6 +180,12 @@ class Lanes:
         """The C type of a row."""
         return row_type(self.prefix, self.all[lane].element)
 
+    def value_type(self, lane: int) -> str:
+        """The type of the struct that a row of messages within others begins with."""
+        element = self.all[lane].element
+        assert isinstance(element, Struct)
+        return row_type(self.prefix, element.members[0].type)
+
     def path(self, lane: int, offset: int, scalar: str) -> str | None:
         """How a scalar of a row is written behind the row, None where no member of that type lies there."""
         element = self.all[lane].element
@@ -187,7 +196,11 @@ class Lanes:
         path = self.path(lane, offset, scalar)
         if path is None:
             return None
-        return f"{self.rows(lane)}->{path[1:]}" if lane == 0 else f"{self.rows(lane)}[{row}]{path}"
+        return f"{self.rows(lane)}->{path[1:]}" if lane == self.subject else f"{self.rows(lane)}[{row}]{path}"
+
+    def objects(self, lane: int) -> str:
+        """What reaches the messages of a lane where an object has them."""
+        return f"{self.prefix}_{self.rows(lane)}_objects"
 
     def words(self) -> frozenset[str]:
         """All that no local of a kernel may be called."""

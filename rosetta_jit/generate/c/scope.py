@@ -53,7 +53,9 @@ class Scope:
 
     def rows(self, lane: int) -> str:
         """The pointer to the rows of a lane."""
-        self.parameters.add("given_row" if lane == 0 and self.lanes.row else "given_object" if lane in self.lanes.given else "holder")
+        self.parameters.add(
+            "given_row" if lane == self.lanes.subject and self.lanes.row else "given_object" if lane in self.lanes.given else "holder"
+        )
         self.touched.add(lane)
         self._note(lane)
         return self.lanes.rows(lane)

@@ -5,14 +5,15 @@ What a message cannot be ends a function with a negative result: `fail` notes th
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.aligned import aligned
+from rosetta_jit.generate.c.calls import positions_found, print_call, print_host_call
 from rosetta_jit.generate.c.expressions import expression, list_within, location, store, written
 from rosetta_jit.generate.c.flag_loops import flags_done, flags_of
+from rosetta_jit.generate.c.function import Function, fail, fail_if, lacks
 from rosetta_jit.generate.c.positions import (
     NONE,
     Positions,
@@ -21,7 +22,6 @@ from rosetta_jit.generate.c.positions import (
     after_require,
     bound_in,
     forget,
-    is_position,
     joined,
     said_by,
 )
@@ -29,69 +29,17 @@ from rosetta_jit.generate.c.room import rows_of
 from rosetta_jit.generate.c.state import register_word
 from rosetta_jit.generate.c.straight import statement as straight_statement
 from rosetta_jit.generate.c.texts import comment
-from rosetta_jit.generate.c.varint_loops import REPLACED, Sized, replaced, rounds_done, rounds_of, sooner
+from rosetta_jit.generate.c.varint_loops import Sized, rounds_done, rounds_of
 from rosetta_jit.generate.c.words import C_TYPES
-from rosetta_jit.generate.origins import Origin, described, origin_of
+from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import leaves
-from rosetta_jit.generate.unit import Role
-from rosetta_jit.kernel import ir, nodes
+from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.terms import END, add, type_of
-from rosetta_jit.startup.dataclass import dataclass, field
+from rosetta_jit.kernel.terms import type_of
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.scope import Scope
-
-
-@dataclass(frozen=True, slots=True)
-class Callable:
-    """A routine as a C function: its name, what it takes besides its own parameters, and which results are positions of the message."""
-
-    name: str
-    shared: tuple[str, ...]
-    fails: bool
-    positions: frozenset[int] = frozenset()
-
-
-@dataclass(slots=True)
-class Function:
-    """One function being printed.
-
-    ``read`` are the locals whose values anything needs; ``finish`` are the lines before a return of success. ``is_routine``: it
-    returns the numbers of its own sites. ``numbers`` are the rows of the file's table that sites of the kernel have got, ``origins`` what
-    rules of the mapping name. ``role`` is what its kernel is for. ``otherwise`` is
-    what is done where a message cannot be, if nobody is told why. ``known`` are positions of the message where the next statement stands,
-    ``aligned`` other forms of values that the block's locals have.
-    """
-
-    scope: Scope
-    sites: Sequence[ir.Site]
-    routines: Mapping[str, Callable]
-    read: frozenset[str] = frozenset()
-    finish: tuple[str, ...] = ()
-    is_routine: bool = False
-    numbers: dict[int, int] = field(default_factory=lambda: {0: 0})
-    origins: Sequence[Origin] = ()
-    role: Role = "decode"
-    otherwise: str = ""
-    known: Positions = NONE
-    aligned: Mapping[str, nodes.Expr] = field(default_factory=dict[str, nodes.Expr])
-    writer: Writer = field(default_factory=lambda: Writer(depth=1))
-
-    def line(self, text: str) -> None:
-        self.writer.line(text)
-
-    def site(self, number: int) -> int:
-        """The row of a site in the table, which has those alone that a function names."""
-        return number if self.is_routine else self.numbers.setdefault(number, len(self.numbers))
-
-    @contextmanager
-    def block(self, head: str) -> Generator[None]:
-        """Braces around what is written until the end of the `with`."""
-        with self.writer.indented(f"{head} {{"):
-            yield
-        self.line("}")
 
 
 def print_block(function: Function, block: nodes.Block) -> Positions:
@@ -108,13 +56,13 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
     scope = function.scope
     match stmt:
         case nodes.Require(at, size, failure):
-            _fail_if(function, lacks(function, at, size), failure)
+            fail_if(function, lacks(function, at, size), failure)
             function.known = after_require(function.known, at, size)
         case nodes.Expect(condition, failure):
             if condition == FALSE:
-                _fail(function, failure)
+                fail(function, failure)
             else:
-                _fail_if(function, expression(scope, folded(nodes.Unary("not", condition))), failure)
+                fail_if(function, expression(scope, folded(nodes.Unary("not", condition))), failure)
         case nodes.Let() | nodes.Var() | nodes.Assign():
             _bind(function, stmt)
             function.known = after_binding(function.known, stmt.name, stmt.value)
@@ -136,19 +84,19 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
         case nodes.For() | nodes.While() | nodes.If() | nodes.Switch():
             _nested(function, stmt)
         case nodes.Call():
-            _call(function, stmt)
-            found = function.routines[stmt.routine].positions if stmt.routine in function.routines else frozenset[int]()
-            function.known = after_call(function.known, stmt, found)
+            print_call(function, stmt)
+            function.known = after_call(function.known, stmt, positions_found(function, stmt))
         case nodes.HostCall():
-            _host_call(function, stmt)
+            print_host_call(function, stmt)
             function.known = forget(function.known, bound_in(stmt))
         case _:
             assert_never(stmt)
 
 
 def _bind(function: Function, stmt: nodes.Let | nodes.Var | nodes.Assign) -> None:
-    """A local, if anything reads it."""
-    if stmt.name not in function.read:
+    """A local, if anything reads it; a state of a loop that begins where the message is goes on there."""
+    stays = isinstance(stmt, nodes.Assign) and isinstance(stmt.value, nodes.Local) and stmt.value.name == stmt.name
+    if stmt.name not in function.read or stays:
         return
     name, value = function.scope.locals.identifier(stmt.name), bare(expression(function.scope, function.aligned.get(stmt.name, stmt.value)))
     declared = "" if isinstance(stmt, nodes.Assign) else f"{C_TYPES[type_of(stmt.value)]} "
@@ -196,42 +144,6 @@ def _shown(scope: Scope, source: nodes.Place) -> tuple[str, str] | None:
     if source.lane in scope.lanes.within:
         return list_within(scope, source.lane, source.row)
     return (scope.rows(source.lane), bare(expression(scope, source.row))) if source.lane in scope.lanes.viewed else None
-
-
-def lacks(function: Function, at: nodes.Expr, size: nodes.Expr) -> str:
-    """Whether some of ``size`` bytes from ``at`` are missing."""
-    scope = function.scope
-    is_known = is_position(function.known, at)
-    match size:
-        case nodes.Const(_, length) if is_known and length >= 0:
-            return f"({expression(scope, END)} < {bare(expression(scope, add(at, size)))})"
-        case _:
-            arguments = [bare(expression(scope, each)) for each in (at, size, END)]
-            return f"{scope.calls('lacks_behind' if is_known else 'lacks')}({', '.join(arguments)})"
-
-
-def _fail_if(function: Function, condition: str, failure: nodes.Failure) -> None:
-    with function.block(f"if ({bare(condition)})"):
-        _fail(function, failure)
-
-
-def _fail(function: Function, failure: nodes.Failure) -> None:
-    _failed(
-        function, str(function.site(failure.site)), expression(function.scope, failure.at), failure.indices, function.sites[failure.site]
-    )
-
-
-def _failed(function: Function, site: str, at: str, indices: tuple[nodes.Expr, ...], about: ir.Site | None) -> None:
-    """Leave the function. A routine leaves the indices to who calls it."""
-    if function.otherwise:
-        function.line(function.otherwise)
-        return
-    function.scope.takes("failure")
-    for number, each in enumerate(indices if not function.is_routine else ()):
-        function.line(f"failure->indices[{number}] = {bare(expression(function.scope, each))};")
-    said = "" if about is None else f" {comment(described(about))}"
-    name = "fail_here" if function.is_routine else "fail"
-    function.line(f"return {function.scope.calls(name)}(failure, {site}, {bare(at)});{said}")
 
 
 def _fill(scope: Scope, target: nodes.Address, size: nodes.Expr, byte: int) -> str:
@@ -344,54 +256,3 @@ def _case(function: Function, label: str, body: nodes.Block) -> list[Positions]:
             function.line("break;")
     function.writer.depth += 1
     return ends
-
-
-def _call(function: Function, call: nodes.Call) -> None:
-    """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
-    scope = function.scope
-    if scope.lanes.dialect == "c++" and call.routine in REPLACED:
-        for line in replaced(scope, call):
-            function.line(line)
-        return
-    routine = function.routines[call.routine]
-    for result in call.results:
-        function.line(f"{C_TYPES[result.type]} {scope.locals.identifier(result.name)} = 0;")
-    found = (f"&{scope.locals.identifier(result.name)}" for result in call.results)
-    for each in routine.shared:
-        scope.takes(each)
-    arguments = ", ".join((*routine.shared, *(bare(expression(scope, each)) for each in call.arguments), *found))
-    if not routine.fails:
-        function.line(f"{routine.name}({arguments});")
-        return
-    name = call.results[0].name if call.results else call.routine
-    problem = scope.locals.identifier(f"{name} problem")
-    quick = sooner(scope, call) if scope.lanes.dialect == "c++" else None
-    if quick is None:
-        function.line(f"const int64_t {problem} = {routine.name}({arguments});")
-    else:
-        function.line(f"int64_t {problem} = 0;")
-        with function.block(f"if ({quick[0]})"):
-            function.line(quick[1])
-        function.writer.lines[-1] += " else {"
-        function.line(f"    {problem} = {routine.name}({arguments});")
-        function.line("}")
-    with function.block(f"if ({problem} != 0)"):
-        _failed(function, _site(problem, tuple(map(function.site, call.sites))), "failure->offset", call.indices, None)
-
-
-def _site(problem: str, sites: tuple[int, ...]) -> str:
-    """The caller's site for that of a routine."""
-    text = str(sites[-1])
-    for own, site in reversed(list(enumerate(sites[:-1], 1))):
-        text = f"{problem} == {own} ? {site} : {text}" if text != str(site) or len(set(sites)) > 1 else text
-    return text
-
-
-def _host_call(function: Function, call: nodes.HostCall) -> None:
-    """A function that the program has which this becomes part of."""
-    scope = function.scope
-    result = scope.locals.identifier(call.result.name)
-    function.line(f"{C_TYPES[call.result.type]} {result} = 0;")
-    arguments = ", ".join((*(bare(expression(scope, each)) for each in call.arguments), f"&{result}"))
-    with function.block(f"if (!{scope.lanes.prefix}_{call.function}({arguments}))"):
-        _fail(function, call.failure)

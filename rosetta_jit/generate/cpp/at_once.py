@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.function import Function, lacks
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.positions import after_binding, after_require
 from rosetta_jit.generate.c.scope import Scope
-from rosetta_jit.generate.c.statements import Function, lacks, print_block
+from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.checks import IMPLIED, fewer
 from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, lanes_of_nothing, of_empty_lists, of_nothing

@@ -1,19 +1,8 @@
 /* == decode == */
     /* Reads a message. After a failure the holder is in a valid state, and what it has is not said. */
-    rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target);
-
-    /* The same; throws rosetta_jit::failure. */
-    void decode(const void *bytes, std::size_t size, holder &target) { static_cast<void>(try_decode(bytes, size, target).value()); }
-#if __cplusplus >= 202002L
-    void decode(std::span<const std::byte> bytes, holder &target) { decode(bytes.data(), bytes.size(), target); }
-#endif
-/* == read_at_once == */
-    /* Reads a message. After a failure the holder is in a valid state, and what it has is not said. */
     rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target)
     {
-        if (ROSETTA_JIT_LIKELY($reads)) {
-            return rosetta_jit::done{};
-        }
+$reads
         return decode_any(bytes, size, target);
     }
 
@@ -22,6 +11,10 @@
 #if __cplusplus >= 202002L
     void decode(std::span<const std::byte> bytes, holder &target) { decode(bytes.data(), bytes.size(), target); }
 #endif
+/* == reads == */
+        if (ROSETTA_JIT_LIKELY($read)) {
+            return rosetta_jit::done{};
+        }
 /* == read_at_once_private == */
     /* Reads a message as nearly all are, where a compiler sees the object, too; false where it is another one, or something is wrong with it. */
     static bool is_read(const unsigned char *__restrict bytes, std::int64_t end, holder &given_object)
@@ -38,21 +31,15 @@ $statements
         return true;
     }
 
-/* == any_private == */
+/* == decode_any_private == */
     /* Reads any message, and says what is wrong with it. */
-    rosetta_jit::result<rosetta_jit::done> decode_any(const void *bytes, std::size_t size, holder &target);
+    rosetta_jit::detail::outcome<rosetta_jit::done> decode_any(const void *bytes, std::size_t size, holder &target);
 
-/* == write == */
-    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity);
-/* == put_at_once == */
-    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity)
-    {
+/* == puts == */
         const std::int64_t size = put_at_once(source, static_cast<unsigned char *>(bytes), static_cast<std::int64_t>(capacity));
         if (ROSETTA_JIT_LIKELY(size >= 0)) {
             return static_cast<std::size_t>(size);
         }
-        return encode_any(source, bytes, capacity);
-    }
 /* == put_at_once_private == */
     /* Writes a message where a compiler sees the object, too, and says how many bytes it took; a negative number where anything is wrong. */
     static std::int64_t put_at_once(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end)
@@ -60,8 +47,9 @@ $statements
 $statements
     }
 
+/* == encode_any_private == */
     /* Writes any message, and says what is wrong with it. */
-    rosetta_jit::result<std::size_t> encode_any(const holder &source, void *bytes, std::size_t capacity);
+    rosetta_jit::detail::outcome<std::size_t> encode_any(const holder &source, void *bytes, std::size_t capacity);
 
 /* == wire == */
     /* Reads a message of `$wire`, and sets what its messages tell: the rest of the target stays. One that is refused changes nothing. */
@@ -80,7 +68,11 @@ $statements
     rosetta_jit::result<std::size_t> try_size(const holder &source);
 
     /* Writes the message to `bytes`, which has `capacity` of them, and says how many it took. */
-$write
+    rosetta_jit::result<std::size_t> try_encode(const holder &source, void *bytes, std::size_t capacity)
+    {
+$puts
+        return encode_any(source, bytes, capacity);
+    }
 
     /* Makes a string the message. */
     rosetta_jit::result<rosetta_jit::done> try_encode(const holder &source, std::string &bytes);

@@ -5,7 +5,7 @@ How many elements a list has must be found before any text is checked: a message
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel import nodes
@@ -79,8 +79,11 @@ def _of_no_more(body: Block, lists: frozenset[int], counts: set[str], *, anywher
     return tuple(found)
 
 
-def of_no_elements(body: Block) -> Block:
-    """The statements of an encoder that are left where counts of lists are 0: no loop, and so no local that changes."""
+def of_no_elements(body: Block, visits: Collection[str] = ()) -> Block:
+    """The statements of an encoder that are left where counts of lists are 0: no loop, and so no local that changes.
+
+    ``visits`` are the calls that write the messages of lists.
+    """
     values, found = dict[str, Expr](), list[Stmt]()
     for each in body:
         if isinstance(each, nodes.While) and with_values(nodes.Expect(each.condition, NOT_EMPTY), values) == nodes.Expect(FALSE, NOT_EMPTY):
@@ -92,6 +95,8 @@ def of_no_elements(body: Block) -> Block:
                 values[name] = value
             case nodes.For(_, count) if count == NONE:
                 continue
+            case nodes.Call(routine, (begin, count), (behind,)) if routine in visits and count == NONE:
+                stmt = nodes.Let(behind.name, begin)
             case _:
                 pass
         found.append(stmt)

@@ -64,8 +64,9 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
             for name, text in (
                 ("read_empty_at_once", there.reads_empty),
                 ("read_at_once", there.reads),
-                ("any", there.reads or there.reads_empty),
+                ("decode_any", "any" if "borrow" in unit.kernels else ""),
                 ("put_at_once", there.puts),
+                ("encode_any", "any" if "encode" in unit.kernels else ""),
             )
             if text
         ),
@@ -129,13 +130,14 @@ def _declared(unit: Unit, there: AtOnce) -> list[str]:
         for name, text in (("is_read_empty", there.reads_empty), ("is_read", there.reads))
         if text
     )
-    decode = Template(known["read_at_once"]).substitute(reads=is_there) if is_there else known["decode"]
-    found = [decode] if "borrow" in unit.kernels else []
+    reads = Template(known["reads"]).substitute(read=is_there).rstrip() if is_there else ""
+    found = [Template(known["decode"]).substitute(reads=reads)] if "borrow" in unit.kernels else []
     for wire in wires_of(unit):
         every, last = unit.arrivals[wire]
         found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))
-    write = known["put_at_once" if there.puts else "write"].rstrip()
-    return [*found, *([Template(known["encode"]).substitute(write=write)] if "encode" in unit.kernels else [])]
+    puts = known["puts"].rstrip() if there.puts else ""
+    encode = [Template(known["encode"]).substitute(puts=puts)] if "encode" in unit.kernels else []
+    return [re.sub(r"\{\n\n+", "{\n", text) for text in (*found, *encode)]
 
 
 def _section(file: Path) -> tuple[str, str]:

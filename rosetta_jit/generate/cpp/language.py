@@ -14,9 +14,10 @@ from rosetta_jit.generate.cpp.at_once import at_once, of_no_elements_at_once
 from rosetta_jit.generate.cpp.decoder import decoder_of, open_decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
+from rosetta_jit.generate.cpp.messages_within import descents_of
 from rosetta_jit.generate.cpp.opened import without_asking, without_counting
 from rosetta_jit.generate.cpp.put_at_once import put_at_once
-from rosetta_jit.generate.cpp.reading import reader, viewed_by
+from rosetta_jit.generate.cpp.reading import copied_lanes, directs_of, reader, viewed_by
 from rosetta_jit.generate.cpp.source import source
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
@@ -40,7 +41,7 @@ def files(unit: Unit) -> dict[str, str]:
     )
     return {
         f"{unit.name}.hpp": header(unit, manners, there),
-        f"{unit.name}.cpp": source(unit, parts, manners, there, None if decoder is None else decoder[0]),
+        f"{unit.name}.cpp": source(unit, parts, manners, None if decoder is None else decoder[0]),
         SHARED: (INCLUDE / SHARED).read_text("utf-8"),
     }
 
@@ -67,13 +68,15 @@ def _manners(unit: Unit) -> Manners:
 
 def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
     """The functions of a kernel; those of encoders are given the message's row, and addresses, those of decoders the object."""
+    origins = unit.origins.get(role, ())
     if kind_of(role) in ("encode", "size"):
         walk, kernel = reader(unit, lanes, manners), undamaged_kernel(kernel)
         views, within = frozenset(each.direct.lane for each in viewed_by(walk)), {lane: each.within for lane, each in walk.within.items()}
         forward = not unit.layout.recursive
         lanes = replace(lanes, addressed=walk.addressed, viewed=views, within=within, row=True, forward=forward)
-    else:
-        kernel, lanes = decoder_of(unit, manners, kernel, lanes)
-        kernel = without_asking(kernel, lanes.opened)
-        kernel = kernel if wire_of(role) else without_counting(kernel, lanes.given)
-    return print_kernel(kernel, lanes, role, unit.origins.get(role, ()))
+        moving = frozenset(copied_lanes(lanes, directs_of(walk, "source"), walk)) - views
+        return print_kernel(kernel, replace(lanes, moving=moving), role, origins, descents_of(unit).get(role))
+    kernel, lanes = decoder_of(unit, manners, kernel, lanes)
+    kernel = without_asking(kernel, lanes.opened)
+    kernel = kernel if wire_of(role) else without_counting(kernel, lanes.given)
+    return print_kernel(kernel, lanes, role, origins)

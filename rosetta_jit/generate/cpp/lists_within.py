@@ -44,7 +44,8 @@ class _Uses:
 
 def lists_within(walk: Walk) -> dict[int, ListWithin]:
     """Those that an encoder reads, by their lanes; ``walk`` knows the lanes whose texts it takes by their addresses."""
-    candidates = [] if wires_of(walk.unit) else [*_within(walk, Ref(walk.unit.type), walk.unit.layout.root, Spot(HOLDER), 0)]
+    root = (Ref(walk.unit.type), walk.unit.layout.root, Spot(HOLDER))
+    candidates = [] if wires_of(walk.unit) else [*_within(walk, *root, 0, set())]
     if not candidates or not {"encode", "size"} & set(map(kind_of, walk.unit.kernels)):
         return {}
     uses, found = _uses(_blocks(walk.unit)), dict[int, ListWithin]()
@@ -82,20 +83,28 @@ def _uses(blocks: Iterable[Block]) -> _Uses:
     return _Uses(by_lane, known, frozenset(changed), frozenset(in_rounds))
 
 
-def _within(walk: Walk, type_: Type, slot: Slot, spot: Spot, lane: int) -> Iterator[tuple[Listed, int, int]]:
-    """Lists that elements of lists have, the innermost ones first, and where their spans lie: ``lane`` has the row of a value."""
+def _within(walk: Walk, type_: Type, slot: Slot, spot: Spot, lane: int, visited: set[int]) -> Iterator[tuple[Listed, int, int]]:
+    """Lists that elements of lists have, the innermost ones first, and where their spans lie: ``lane`` has the row of a value.
+
+    So do messages that contain their own type, each of which is ``visited`` once.
+    """
     resolved = walk.unit.schema.resolve(type_)
     match resolved, slot:
         case Struct(), Row(members=members):
             for each, name, member in zip(resolved.fields, walk.names(resolved), members, strict=True):
                 if member.presence is None:
-                    yield from _within(walk, each.type, member.slot, walk.member_of(spot.at, name), lane)
+                    yield from _within(walk, each.type, member.slot, walk.member_of(spot.at, name), lane, visited)
         case Array(element), Span(offset, own) if walk.unit.layout.lanes[own].links is None:
             at, inner = walk.text("direct", spot), walk.unit.layout.lanes[own].element
             if not isinstance(inner, Number):
-                yield from _within(walk, element, inner, Spot(ELEMENT.substitute(list=at)), own)
+                yield from _within(walk, element, inner, Spot(ELEMENT.substitute(list=at)), own, visited)
             if lane and own not in walk.addressed and walk.text("laid out", spot):
                 yield Listed(Direct(own, "", Spot(at)), element), lane, offset
+        case ((Array() | Struct()), Span(_, own)) if own in walk.visited - visited:
+            visited.add(own)
+            element = resolved.element if isinstance(resolved, Array) else type_
+            at = Spot(f"std::declval<const {walk.lanes.objects(own)}::type &>()")
+            yield from _within(walk, element, walk.unit.layout.lanes[own].element, at, own, visited)
         case _:
             return
 

@@ -1,5 +1,5 @@
 /* == decode == */
-rosetta_jit::result<rosetta_jit::done> codec::$function(const void *data, std::size_t size, ::$name::holder &target)
+rosetta_jit::detail::outcome<rosetta_jit::done> codec::decode_any(const void *data, std::size_t size, ::$name::holder &target)
 {
     ${name}_holder *const filled = memory_.get();
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);
@@ -78,7 +78,7 @@ $bind
 }
 
 /* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
-rosetta_jit::result<std::size_t> measured(${name}_source *holder, const $row &given_row, const ${name}_holder &memory)
+rosetta_jit::detail::outcome<std::size_t> measured(${name}_source *holder, const $row &given_row, const ${name}_holder &memory)
 {
     struct failure failure$unmeasured;
     const int64_t end = INT64_MAX;
@@ -92,7 +92,7 @@ rosetta_jit::result<std::size_t> measured(${name}_source *holder, const $row &gi
     return static_cast<std::size_t>(size);
 }
 
-${inline}rosetta_jit::result<std::size_t> written(${name}_source *holder, const $row &given_row, const ${name}_holder &memory, void *target, std::size_t capacity)
+${inline}rosetta_jit::detail::outcome<std::size_t> written(${name}_source *holder, const $row &given_row, const ${name}_holder &memory, void *target, std::size_t capacity)
 {
     unsigned char *const bytes = static_cast<unsigned char *>(target);
     const int64_t end = reach(capacity);
@@ -116,7 +116,7 @@ rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
     return measured(&given, $memory->message, *$memory);
 }
 
-rosetta_jit::result<std::size_t> codec::$function(const ::$name::holder &source, void *bytes, std::size_t capacity)
+rosetta_jit::detail::outcome<std::size_t> codec::encode_any(const ::$name::holder &source, void *bytes, std::size_t capacity)
 {
     ${name}_source given(*$memory, *this);
 $local
@@ -129,12 +129,12 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
 {
     ${name}_source given(*$memory, *this);
     gather(source, &given, $memory->message);
-    const auto size = measured(&given, $memory->message, *$memory);
+    const rosetta_jit::result<std::size_t> size = measured(&given, $memory->message, *$memory);
     if (!size) {
         return size.error();
     }
     bytes.resize(*size);
-    const auto found = $again;
+    const rosetta_jit::result<std::size_t> found = $again;
     if (!found) {
         return found.error();
     }
@@ -142,10 +142,10 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
     return rosetta_jit::done{};
 }
 /* == measure == */
-    auto size = measured(&given, row, *$memory);
-    if (!size) {
+    const auto size = measured(&given, row, *$memory);
+    if (size.failed != nullptr) {
         return size;
     }
-    if (*size > capacity) {
+    if (size.value > capacity) {
         return unplaced(report(encode_sites, {$no_room, 0, {0, 0, 0, 0}}, 0, *$memory));
     }

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.decided import decided
+from rosetta_jit.generate.c.function import Function
 from rosetta_jit.generate.c.lanes import Given, Lanes
 from rosetta_jit.generate.c.scope import Scope
-from rosetta_jit.generate.c.statements import Function, print_block
+from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.always import is_plain, numbers
 from rosetta_jit.generate.cpp.at_once import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
@@ -21,6 +22,7 @@ from rosetta_jit.generate.cpp.empty_lists import NOT_EMPTY, of_no_elements
 from rosetta_jit.generate.cpp.few_elements import most_elements
 from rosetta_jit.generate.cpp.lists_in_place import spans_of
 from rosetta_jit.generate.cpp.measured_first import measured_first
+from rosetta_jit.generate.cpp.messages_within import descents_of
 from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
 from rosetta_jit.generate.cpp.shown_elements import shown_elements
 from rosetta_jit.generate.cpp.walk import Walk
@@ -53,10 +55,12 @@ def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> str:
     if wires_of(unit) or two_roundings((kernel,)):
         return ""
     reached_by, starts, lists = _shown(Walk(unit, lanes, manners, "encode"))
-    kernel = with_numbers_apart(undamaged_kernel(kernel), unit.layout)
+    descents = descents_of(unit).get("encode")
+    kernel = undamaged_kernel(kernel) if descents is None else replace(kernel, bodies=(descents.body,))
+    kernel = with_numbers_apart(kernel, unit.layout)
     empty = sorted(at for at, most in lists.items() if most == 0)
     body = _with_zeros(tuple(_checked(kernel.bodies[0], lists)), {*starts, *lists, *(at + 8 for at in empty)})
-    body = reached(decided((*map(_is_empty, empty), *of_no_elements(body))))
+    body = reached(decided((*map(_is_empty, empty), *of_no_elements(body, () if descents is None else descents.visits))))
     if not _is_short(body):
         return ""
     body = measured_first(body, {at + 8 for at in (*starts, *lists)})

@@ -12,6 +12,7 @@ from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.always import directs
 from rosetta_jit.generate.cpp.lists import row_name, viewed
 from rosetta_jit.generate.cpp.lists_within import lists_within
+from rosetta_jit.generate.cpp.messages_within import visited_lanes
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
 from rosetta_jit.generate.cpp.spots import Direct, Listed
 from rosetta_jit.generate.cpp.walk import Walk
@@ -39,7 +40,7 @@ def addressed_in(unit: Unit, lanes: Lanes, manners: Manners) -> frozenset[int]:
 
 def reader(unit: Unit, lanes: Lanes, manners: Manners) -> Walk:
     """The walk of an encoder, which knows what is read where the object has it."""
-    walk = Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners))
+    walk = Walk(unit, lanes, manners, "encode", addressed=addressed_in(unit, lanes, manners), visited=visited_lanes(unit))
     return replace(walk, within=lists_within(walk))
 
 
@@ -64,7 +65,7 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
         row=row,
         inline="ROSETTA_JIT_INLINE " if is_straight else "",
         memory=memory,
-        again="try_encode(source, &bytes[0], *size)" if is_straight else f"written(&given, {memory}->message, *{memory}, &bytes[0], *size)",
+        again="encode_any(source, &bytes[0], *size)" if is_straight else f"written(&given, {memory}->message, *{memory}, &bytes[0], *size)",
         local=f"    {row} row;" if is_straight else f"    {row} &row = {memory}->message;",
         clear="" if _is_collected(unit) else "    row = {};",
         reset="\n".join(begun),
@@ -84,8 +85,13 @@ def unset(attempt: Attempt) -> str:
 
 def copied(parts: Parts, directs: list[Direct], walk: Walk) -> list[int]:
     """The lanes whose rows an encoder puts together in the codec's memory."""
-    shown = {*(each.lane for each in directs), *walk.addressed, *walk.within}
-    return [lane for lane in range(1, parts.lanes.own) if lane not in shown]
+    return copied_lanes(parts.lanes, directs, walk)
+
+
+def copied_lanes(lanes: Lanes, directs: list[Direct], walk: Walk) -> list[int]:
+    """The same of lanes."""
+    shown = {*(each.lane for each in directs), *walk.addressed, *walk.within, *walk.visited}
+    return [lane for lane in range(1, lanes.own) if lane not in shown]
 
 
 def emptying(walk: Walk, lane: int) -> str:
@@ -106,7 +112,7 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
         members.append(("codec::state *", "state"))
         initial.append("state(&owner.kept)")
     views = {each.direct.lane: _view(walk, each) for each in viewed_by(walk, HOLDER)}
-    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in {*own, *walk.within}} | views
+    shown = {lane: f"shown<{lanes.type(lane)}>" for lane in range(1, lanes.own) if lane not in {*own, *walk.within, *walk.visited}} | views
     lines = [
         "/* What a message is written from: elements where an object has them, and those that are put together in the codec's memory. */",
         f"struct {unit.name}_source {{",

@@ -15,9 +15,10 @@ from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
-from rosetta_jit.generate.cpp.header import AtOnce, filled_in
+from rosetta_jit.generate.cpp.header import filled_in
 from rosetta_jit.generate.cpp.lists import row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
+from rosetta_jit.generate.cpp.messages_within import classes, collecting, collectors
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import (
@@ -63,8 +64,8 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 """
 
 
-def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: Kernel | None) -> str:
-    """The text of the source file; ``there`` as for `header`. ``decoder`` is the kernel that sets fields where the object has them."""
+def source(unit: Unit, parts: Parts, manners: Manners, decoder: Kernel | None) -> str:
+    """The text of the source file. ``decoder`` is the kernel that sets fields where the object has them."""
     printed, lanes = parts.printed, parts.lanes
     walks = {"decode": Walk(unit, lanes, manners, "decode"), "encode": reader(unit, lanes, manners)}
     opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
@@ -90,17 +91,18 @@ def source(unit: Unit, parts: Parts, manners: Manners, there: AtOnce, decoder: K
         includes=_includes(called),
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
-        holder=_row_structs(walks["encode"], [*views, *filled])
+        holder=classes(walks["encode"])
+        + _row_structs(walks["encode"], [*views, *filled])
         + ("" if decoder is None else packed_structs(walks["decode"], decoder, opened))
         + _holder(unit, parts, given, containers, listed, kinds, kinds.keys() & copied(parts, directs["encode"], walks["encode"]))
-        + (source_struct(unit, parts, directs["encode"], walks["encode"]) if "encode" in printed else ""),
+        + (source_struct(unit, parts, directs["encode"], walks["encode"]) + collectors(walks["encode"]) if "encode" in printed else ""),
         support=SELDOM.sub(r"ROSETTA_JIT_COLD \g<0>", support(without_unused(called, printed))),
         kernels=_kernels(unit, parts),
         walks=between,
         lanes=_lane_names(unit, parts),
         said=SAID if said else "",
         written=", written_(new memory)" if writes_apart(unit) else "",
-        functions="\n".join(_methods(unit, parts, directs, given, opened, walks["encode"], there)),
+        functions="\n".join(_methods(unit, parts, directs, given, opened, walks["encode"])),
     )
 
 
@@ -226,10 +228,12 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
         head = f"template <class Target>\nvoid {function}({parameters})"
         target, unused = "target", ("from", "bytes", "row", "target")
     else:
-        reached = f"to.{parts.lanes.rows(lane)}.rows[at].value" if lane else "row"
-        last = "std::int64_t at" if lane else f"{row} &row"
+        is_taken = lane and lane not in walk.visited
+        reached = f"to.{parts.lanes.rows(lane)}.rows[at].value" if is_taken else "row"
+        last = "std::int64_t at" if is_taken else f"{row} &row"
         head = f"template <class Source>\nvoid collect{name}(const Source &source, {unit.name}_source &to, {last})"
-        target, unused = "source", ("source", "to", "at" if lane else "row")
+        head = head if lane not in walk.visited else collecting(walk, lane)
+        target, unused = "source", ("source", "to", "at" if is_taken else "row")
     walk.writer.lines, walk.writer.depth, walk.depth, walk.in_rows = [], 1, 0, 1 if lane else 0
     walk.share = unit.shares.get(role, WHOLE)
     for each in unused:
@@ -243,7 +247,7 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
 
 
 def _methods(
-    unit: Unit, parts: Parts, directs: dict[str, list[Direct]], given: frozenset[int], opened: list[Opened], walk: Walk, there: AtOnce
+    unit: Unit, parts: Parts, directs: dict[str, list[Direct]], given: frozenset[int], opened: list[Opened], walk: Walk
 ) -> list[str]:
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
@@ -262,7 +266,6 @@ def _methods(
         texts.append(
             Template(known["decode"]).substitute(
                 into,
-                function="decode_any" if there.reads or there.reads_empty else "try_decode",
                 begin="\n".join(_told(asks)),
                 bind="\n".join(f"    {FILLED}->{lanes.rows(each.lane)}.fill({each.spot.at});" for each in directs["decode"]),
                 reset=reset,
@@ -275,7 +278,6 @@ def _methods(
         )
     texts += [_of_wire(unit, parts, known, role) for role in printed if wire_of(role)]
     texts += [known["reset"]] if wires_of(unit) else []
-    words["function"] = "encode_any" if there.puts else "try_encode"
     texts += [encoder(unit, parts, known, words, directs["encode"], walk)] if "encode" in printed else []
     return [re.sub(r"\n+(\n    |\n})", r"\1", text) for text in texts]
 

@@ -42,10 +42,10 @@ IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 class Walk:
     """One of the functions being printed; ``in_rows`` is how many lists there are around a value, ``share`` what is set of it.
 
-    ``within`` are the lists within lists that an encoder reads where they are, by their lanes. ``takes``: it copies rows, whose lanes have
-    memory of their own; ``shows`` are lanes that may show the elements of a container instead. ``taken`` are the lists that a decoder has
-    put into the object already, where their elements lie in memory as rows do, ``straight`` the numbers, as rows would have them,
-    ``opened`` lists and texts.
+    ``within`` are the lists within lists that an encoder reads where they are, by their lanes, ``visited`` the lanes of messages that it
+    reads so. ``takes``: it copies rows, whose lanes have memory of their own; ``shows`` are lanes that may show the elements of a container
+    instead. ``taken`` are the lists that a decoder has put into the object already, where their elements lie in memory as rows do,
+    ``straight`` the numbers, as rows would have them, ``opened`` lists and texts.
     """
 
     unit: Unit
@@ -55,6 +55,7 @@ class Walk:
     direct: frozenset[int] = frozenset()
     addressed: frozenset[int] = frozenset()
     within: Mapping[int, ListWithin] = field(default_factory=dict[int, ListWithin])
+    visited: frozenset[int] = frozenset()
     taken: frozenset[int] = frozenset()
     straight: frozenset[str] = frozenset()
     opened: frozenset[int] = frozenset()
@@ -152,16 +153,17 @@ class Walk:
         if self.direction == "decode":
             with self.writer.indented(f"if ({there}) {{"):
                 self.lines("optional make", spot)
-                self.nested(type_.value, member, element, row, self._value("optional", spot))
+                self.nested(type_.value, member, element, row, self.value_of("optional", spot))
             with self.writer.indented("} else {"):
                 self.lines("optional clear", spot)
         else:
             with self.writer.indented(f"if ({self.text('optional is there', spot)}) {{"):
                 self.writer.line(f"rosetta_jit::detail::set_bit({around}.presence, {member.presence});")
-                self.nested(type_.value, member, element, row, self._value("optional", spot))
+                self.nested(type_.value, member, element, row, self.value_of("optional", spot))
         self.writer.line("}")
 
-    def _value(self, kind: str, spot: Spot) -> Spot:
+    def value_of(self, kind: str, spot: Spot) -> Spot:
+        """What an optional field or a pointer has."""
         return Spot(self.text(f"{kind} value", spot), spot.owner, spot.field)
 
     def nested(self, type_: Type, member: Member, element: object, row: str, spot: Spot) -> None:
@@ -188,7 +190,7 @@ class Walk:
         lane = self.lanes.rows(slot.lane)
         if slot.lane in self.direct or (self.direction == "decode" and slot.lane in self.opened):
             return
-        if slot.lane in self.within:
+        if slot.lane in self.within or slot.lane in self.visited:
             self.lines("list within", spot, row=row)
             return
         if not isinstance(type_, Array) or isinstance(self.unit.layout.lanes[slot.lane].element, Number):
@@ -281,7 +283,7 @@ class Walk:
     def _begin_row(self, lane: int, row: str, index: str) -> str:
         """What a row to be set is called. Where types contain themselves, what it contains may move it: it is reached by its number."""
         rows = f"to.{self.lanes.rows(lane)}.rows"
-        if self.unit.layout.recursive:
+        if self.unit.layout.recursive and not self.visited:
             at = self.local("at")
             self.writer.line(f"const std::int64_t {at} = {index};")
             return f"{rows}[{at}]"
@@ -290,24 +292,27 @@ class Walk:
 
     def link(self, slot: Span, row: str, spot: Spot, present: str = "") -> None:
         """A field of a type that contains itself: no row, or one."""
-        self.depth, self.takes = self.depth + 1, True
         lane = slot.lane
+        self.depth, self.takes = self.depth + 1, self.takes or lane not in self.visited
         type_ = Ref(next(name for number, name in self.unit.layout.recursive if number == lane))
         if self.direction == "decode":
             with self.writer.indented(f"if ({row}.count > 0) {{"):
                 self.lines("link make", spot)
-                self.row(type_, lane, f"{row}.start", self._value("link", spot))
+                self.row(type_, lane, f"{row}.start", self.value_of("link", spot))
             with self.writer.indented("} else {"):
                 self.lines("link clear", spot)
         else:
             with self.writer.indented(f"if ({self.text('link is there', spot)}) {{"):
                 if present:
                     self.writer.line(present)
-                self._take_one(type_, lane, row, self._value("link", spot))
+                self._take_one(type_, lane, row, self.value_of("link", spot))
         self.writer.line("}")
         self.depth -= 1
 
     def _take_one(self, type_: Type, lane: int, row: str, spot: Spot) -> None:
+        if lane in self.visited:
+            self.lines("message within", spot, row=row)
+            return
         start = self.local("start")
         self.writer.line(f"const std::int64_t {start} = rosetta_jit::detail::take(to.{self.lanes.rows(lane)}, 1);")
         self.writer.line(f"{row} = {{{start}, 1}};")
@@ -378,7 +383,7 @@ class Walk:
                     self.lines("case make", spot, **more)
                 else:
                     self.writer.line(f"{row}.which = {number};")
-                self.nested(case.type, member, own.type, f"{row}.{own.identifier}", self._case(spot, more))
+                self.nested(case.type, member, own.type, f"{row}.{own.identifier}", self.case(spot, more))
             opened = True
         if self.direction == "decode":
             with self.writer.indented("} else {" if opened else "{"):
@@ -386,7 +391,8 @@ class Walk:
         if opened or self.direction == "decode":
             self.writer.line("}")
 
-    def _case(self, spot: Spot, more: dict[str, str]) -> Spot:
+    def case(self, spot: Spot, more: dict[str, str]) -> Spot:
+        """The value of a union that has this case."""
         if f"case {self.direction}" in self.manners.sections():
             return Spot(self.text("case", spot, **more))
         return self.member_of(spot.owner, more["case"])

@@ -187,6 +187,7 @@ class Descent:
     def visit(self, elements: HolderElements, count: Expr, then: int) -> None:
         """The rows of an array, the first of them next."""
         writer = self.writer
+        writer.settle()
         with writer.nested() as some:
             shallow = Compare("lt", self.stack.depth, index(MAX_RECURSION))
             writer.expect(shallow, "nesting", elements.where, f"more than {MAX_RECURSION} structs within each other")

@@ -431,7 +431,7 @@ codec::~codec() = default;
 codec::codec(codec &&) noexcept = default;
 codec &codec::operator=(codec &&) noexcept = default;
 
-rosetta_jit::result<rosetta_jit::done> codec::try_decode(const void *data, std::size_t size, ::torso_state::holder &target)
+rosetta_jit::detail::outcome<rosetta_jit::done> codec::decode_any(const void *data, std::size_t size, ::torso_state::holder &target)
 {
     torso_state_holder *const filled = memory_.get();
     const unsigned char *const bytes = static_cast<const unsigned char *>(data);
@@ -478,7 +478,7 @@ void gather(const ::torso_state::holder &source, torso_state_source *holder, tor
 }
 
 /* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
-rosetta_jit::result<std::size_t> measured(torso_state_source *holder, const torso_state_JointAngles &given_row, const torso_state_holder &memory)
+rosetta_jit::detail::outcome<std::size_t> measured(torso_state_source *holder, const torso_state_JointAngles &given_row, const torso_state_holder &memory)
 {
     struct failure failure = {0, 0, {0, 0, 0, 0}};
     const int64_t end = INT64_MAX;
@@ -492,7 +492,7 @@ rosetta_jit::result<std::size_t> measured(torso_state_source *holder, const tors
     return static_cast<std::size_t>(size);
 }
 
-rosetta_jit::result<std::size_t> written(torso_state_source *holder, const torso_state_JointAngles &given_row, const torso_state_holder &memory, void *target, std::size_t capacity)
+rosetta_jit::detail::outcome<std::size_t> written(torso_state_source *holder, const torso_state_JointAngles &given_row, const torso_state_holder &memory, void *target, std::size_t capacity)
 {
     unsigned char *const bytes = static_cast<unsigned char *>(target);
     const int64_t end = reach(capacity);
@@ -516,7 +516,7 @@ rosetta_jit::result<std::size_t> codec::try_size(const ::torso_state::holder &so
     return measured(&given, memory_->message, *memory_);
 }
 
-rosetta_jit::result<std::size_t> codec::encode_any(const ::torso_state::holder &source, void *bytes, std::size_t capacity)
+rosetta_jit::detail::outcome<std::size_t> codec::encode_any(const ::torso_state::holder &source, void *bytes, std::size_t capacity)
 {
     torso_state_source given(*memory_, *this);
     torso_state_JointAngles &row = memory_->message;
@@ -528,12 +528,12 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::torso_state::ho
 {
     torso_state_source given(*memory_, *this);
     gather(source, &given, memory_->message);
-    const auto size = measured(&given, memory_->message, *memory_);
+    const rosetta_jit::result<std::size_t> size = measured(&given, memory_->message, *memory_);
     if (!size) {
         return size.error();
     }
     bytes.resize(*size);
-    const auto found = written(&given, memory_->message, *memory_, &bytes[0], *size);
+    const rosetta_jit::result<std::size_t> found = written(&given, memory_->message, *memory_, &bytes[0], *size);
     if (!found) {
         return found.error();
     }

@@ -33,7 +33,10 @@ public:
     codec &operator=(codec &&) noexcept;
 
     /* Reads a message. After a failure the holder is in a valid state, and what it has is not said. */
-    rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target);
+    rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target)
+    {
+        return decode_any(bytes, size, target);
+    }
 
     /* The same; throws rosetta_jit::failure. */
     void decode(const void *bytes, std::size_t size, holder &target) { static_cast<void>(try_decode(bytes, size, target).value()); }
@@ -73,6 +76,9 @@ public:
     std::int64_t number = 0;
 
 private:
+    /* Reads any message, and says what is wrong with it. */
+    rosetta_jit::detail::outcome<rosetta_jit::done> decode_any(const void *bytes, std::size_t size, holder &target);
+
     /* Writes a message where a compiler sees the object, too, and says how many bytes it took; a negative number where anything is wrong. */
     static std::int64_t put_at_once(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end)
     {
@@ -108,7 +114,7 @@ private:
     }
 
     /* Writes any message, and says what is wrong with it. */
-    rosetta_jit::result<std::size_t> encode_any(const holder &source, void *bytes, std::size_t capacity);
+    rosetta_jit::detail::outcome<std::size_t> encode_any(const holder &source, void *bytes, std::size_t capacity);
 
     struct memory;
     std::unique_ptr<memory> memory_;

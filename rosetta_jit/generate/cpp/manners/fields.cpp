@@ -27,6 +27,9 @@ rosetta_jit::detail::point_span<$type>($row, $at);
 /* == list within == */
 rosetta_jit::detail::point_list($row, $at);
 
+/* == message within == */
+rosetta_jit::detail::point_object($row, $at);
+
 /* == texts decode == */
 rosetta_jit::detail::assign_texts($at, from.$lane, $row, from.$texts, bytes);
 

@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
+from rosetta_jit.generate.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.encoding.object_rows import ObjectScope
 from rosetta_jit.generate.python.encoding.parts import Parts
 from rosetta_jit.generate.python.encoding.recursive_rows import RowBody, row_function, without_work_list
 from rosetta_jit.generate.python.passes.asked import counts_asked_first
 from rosetta_jit.generate.python.passes.bools import with_stored_bools
 from rosetta_jit.generate.python.passes.counted import counted
-from rosetta_jit.generate.python.passes.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.passes.local_names import Locals
 from rosetta_jit.generate.python.passes.positions import NotInParts, Sum, without_places, without_positions
 from rosetta_jit.generate.python.passes.presence import is_behind_message, without_lengths

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.python.encoding.joined_parts import Written
 from rosetta_jit.generate.python.encoding.object_rows import ObjectScope
 from rosetta_jit.generate.python.encoding.recursive_rows import row_function
-from rosetta_jit.generate.python.passes.descents import Visit
 from rosetta_jit.generate.python.passes.positions import NotInParts, without_positions
 from rosetta_jit.generate.python.printing.printed import Function
 from rosetta_jit.generate.python.printing.statements import print_statement

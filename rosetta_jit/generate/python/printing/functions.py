@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.cleared import settled
+from rosetta_jit.generate.descents import Descents, NotNested, descended
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.passes.bools import with_bytes
 from rosetta_jit.generate.python.passes.constants import with_constants
-from rosetta_jit.generate.python.passes.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.passes.empty_spans import without_empty_spans
 from rosetta_jit.generate.python.passes.groups import not_negative
 from rosetta_jit.generate.python.passes.late_fields import late_fields

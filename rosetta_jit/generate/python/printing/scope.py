@@ -12,7 +12,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import joined
-from rosetta_jit.generate.python.passes.descents import Visit
+from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.python.passes.direct import Direct
 from rosetta_jit.generate.python.passes.local_names import Locals
 from rosetta_jit.generate.python.printing.classes import NUMPY

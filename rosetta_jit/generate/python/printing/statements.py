@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import assert_never
 
+from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.passes.bools import Bools, bools_read
-from rosetta_jit.generate.python.passes.descents import Visit
 from rosetta_jit.generate.python.passes.groups import grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.passes.mentions import assigned
 from rosetta_jit.generate.python.printing.calls import host_call, pass_on, tuple_of

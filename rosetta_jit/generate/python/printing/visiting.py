@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rosetta_jit.backends.printing import Writer
+from rosetta_jit.generate.descents import Descents, NotNested
 from rosetta_jit.generate.python.passes.bools import with_bytes
 from rosetta_jit.generate.python.passes.borrowed import borrowed_block
-from rosetta_jit.generate.python.passes.descents import Descents, NotNested
 from rosetta_jit.generate.python.passes.groups import not_negative
 from rosetta_jit.generate.python.passes.search import FEW, direct
 from rosetta_jit.generate.python.passes.sums import ends_first, with_locals

@@ -157,11 +157,35 @@ private:
     std::shared_ptr<const rosetta_jit::error> found_;
 };
 
+/* What nothing but its success can be said of. */
+struct done {};
+
+namespace detail {
+
+/* A value or an error as a function returns it in registers: a `result` is made of it, which then has the error. */
+template <class Value> struct [[nodiscard]] outcome {
+    Value value{};
+    const rosetta_jit::error *failed = nullptr;
+
+    outcome(Value found) noexcept : value(found) {}
+    ROSETTA_JIT_COLD outcome(rosetta_jit::error found) : failed(new rosetta_jit::error(std::move(found))) {}
+};
+
+template <> struct [[nodiscard]] outcome<done> {
+    static constexpr done value = {};
+    const rosetta_jit::error *failed = nullptr;
+
+    outcome(done) noexcept {}
+    ROSETTA_JIT_COLD outcome(rosetta_jit::error found) : failed(new rosetta_jit::error(std::move(found))) {}
+};
+} // namespace detail
+
 /* A value or an error, as std::expected of C++23. It is moved, not copied; what it was moved from has a value. */
 template <class Value> class [[nodiscard]] result {
 public:
     result(Value value) : value_(std::move(value)) {}
     result(rosetta_jit::error found) : error_(new rosetta_jit::error(std::move(found))) {}
+    ROSETTA_JIT_INLINE result(detail::outcome<Value> found) noexcept : value_(found.value), error_(found.failed) {}
     ROSETTA_JIT_INLINE result(result &&other) noexcept : value_(std::move(other.value_)), error_(other.error_) { other.error_ = nullptr; }
     result &operator=(result &&other) noexcept
     {
@@ -196,9 +220,6 @@ private:
     Value value_{};
     const rosetta_jit::error *error_ = nullptr;
 };
-
-/* What nothing but its success can be said of. */
-struct done {};
 
 namespace detail {
 
@@ -1609,6 +1630,38 @@ template <class Span, class Container> ROSETTA_JIT_INLINE void point_list(Span &
     span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(at));
     span.count = count_of(from);
 }
+
+/* A message within another, by its address. */
+template <class Span, class Object> ROSETTA_JIT_INLINE void point_object(Span &span, const Object &from)
+{
+    span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(std::addressof(from)));
+    span.count = 1;
+}
+
+/* The messages of a list that `point_list` has pointed to. */
+template <class Container> struct objects {
+    using type = element_type<Container>;
+
+    ROSETTA_JIT_INLINE static const type &at(std::int64_t address, std::int64_t index)
+    {
+        const std::uintptr_t start = static_cast<std::uintptr_t>(address);
+        if constexpr (lie_in_order<Container>::value) {
+            return reinterpret_cast<const type *>(start)[index];
+        } else {
+            return std::begin(*reinterpret_cast<const Container *>(start))[static_cast<std::ptrdiff_t>(index)];
+        }
+    }
+};
+
+/* The one that `point_object` has pointed to. */
+template <class Object> struct object {
+    using type = Object;
+
+    ROSETTA_JIT_INLINE static const type &at(std::int64_t address, std::int64_t index)
+    {
+        return reinterpret_cast<const type *>(static_cast<std::uintptr_t>(address))[index];
+    }
+};
 
 /* To write a message: rows that are the elements of a container; or anywhere in memory, by their addresses. */
 template <class Row> struct shown {

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rosetta_jit.generate.python.passes.mentions import reads_any
+from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.kernel.nodes import (
     Advance,
     Assign,
@@ -193,7 +193,7 @@ def _without_span(stmts: Sequence[Stmt], lane: int, start: Expr, count: Expr) ->
     behind = Place(place.lane, place.row, place.offset + 8)
     gone = (Reserve(lane, count), Let(start.name, Used(lane)), Advance(lane, count), SetField(place, start), SetField(behind, count))
     kept = [each for each in stmts if each not in gone]
-    if len(stmts) - len(kept) != len(gone) or any(reads_any(each, {start.name}) for each in kept):
+    if len(stmts) - len(kept) != len(gone) or start.name in read_names(tuple(kept)):
         raise NotNested
     return kept, place
 

@@ -1,0 +1,99 @@
+"""Calls: of routines, of functions that write the messages within others, and of those of the program."""
+
+from __future__ import annotations
+
+from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.function import Function, fail, fail_if, failed
+from rosetta_jit.generate.c.room import moved
+from rosetta_jit.generate.c.varint_loops import REPLACED, replaced, sooner
+from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.descents import Visit
+from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.unit import Role
+from rosetta_jit.kernel import nodes
+from rosetta_jit.kernel.passes.fold import folded
+
+SHARED_BY_VISITS: dict[Role, tuple[str, ...]] = {"encode": ("holder", "bytes", "end", "failure"), "size": ("holder", "failure")}
+"""What functions that write or measure messages within others are given, besides the message, where it begins, and how deep it lies."""
+
+
+def print_call(function: Function, call: nodes.Call) -> None:
+    """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
+    scope = function.scope
+    if (visit := function.visits.get(call.routine)) is not None:
+        _visit(function, call, visit)
+        return
+    if scope.lanes.dialect == "c++" and call.routine in REPLACED:
+        for line in replaced(scope, call):
+            function.line(line)
+        return
+    routine = function.routines[call.routine]
+    for result in call.results:
+        function.line(f"{C_TYPES[result.type]} {scope.locals.identifier(result.name)} = 0;")
+    found = (f"&{scope.locals.identifier(result.name)}" for result in call.results)
+    for each in routine.shared:
+        scope.takes(each)
+    arguments = ", ".join((*routine.shared, *(bare(expression(scope, each)) for each in call.arguments), *found))
+    if not routine.fails:
+        function.line(f"{routine.name}({arguments});")
+        return
+    name = call.results[0].name if call.results else call.routine
+    problem = scope.locals.identifier(f"{name} problem")
+    quick = sooner(scope, call) if scope.lanes.dialect == "c++" else None
+    if quick is None:
+        function.line(f"const int64_t {problem} = {routine.name}({arguments});")
+    else:
+        function.line(f"int64_t {problem} = 0;")
+        with function.block(f"if ({quick[0]})"):
+            function.line(quick[1])
+        function.writer.lines[-1] += " else {"
+        function.line(f"    {problem} = {routine.name}({arguments});")
+        function.line("}")
+    with function.block(f"if ({problem} != 0)"):
+        failed(function, _site(problem, tuple(map(function.site, call.sites))), "failure->offset", call.indices, None)
+
+
+def positions_found(function: Function, call: nodes.Call) -> frozenset[int]:
+    """Which results of a call are positions of the message."""
+    if call.routine in function.visits:
+        return frozenset({0})
+    return function.routines[call.routine].positions if call.routine in function.routines else frozenset()
+
+
+def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
+    """The messages of an array, one behind the other. Of a tree most have none. What they contain may move the rows at hand."""
+    scope, lanes = function.scope, function.scope.lanes
+    at, count = (bare(expression(scope, each)) for each in call.arguments)
+    start, number = bare(expression(scope, visit.start)), scope.locals.identifier("i")
+    behind = scope.locals.identifier(call.results[0].name)
+    function.line(f"int64_t {behind} = {at};")
+    with function.block(f"if (ROSETTA_JIT_UNLIKELY({count} > 0))"):
+        if visit.shallow is not None:
+            fail_if(function, expression(scope, folded(nodes.Unary("not", visit.shallow.condition))), visit.shallow.failure)
+        with function.block(f"for (int64_t {number} = 0; {number} < {count}; {number}++)"):
+            shared = ", ".join(map(scope.takes, SHARED_BY_VISITS[function.role]))
+            arguments = (f"{lanes.objects(visit.lane)}::at({start}, {number})", behind, bare(expression(scope, visit.depth)))
+            function.line(f"{behind} = {function.role}_{lanes.rows(visit.lane)}({shared}, {', '.join(arguments)});")
+            with function.block(f"if ({behind} < 0)"):
+                function.line(f"return {behind};")
+        for lane in sorted(lanes.moving):
+            scope.moved.add(lane)
+            function.line(moved(lanes, lane))
+
+
+def _site(problem: str, sites: tuple[int, ...]) -> str:
+    """The caller's site for that of a routine."""
+    text = str(sites[-1])
+    for own, site in reversed(list(enumerate(sites[:-1], 1))):
+        text = f"{problem} == {own} ? {site} : {text}" if text != str(site) or len(set(sites)) > 1 else text
+    return text
+
+
+def print_host_call(function: Function, call: nodes.HostCall) -> None:
+    """A function that the program has which this becomes part of."""
+    scope = function.scope
+    result = scope.locals.identifier(call.result.name)
+    function.line(f"{C_TYPES[call.result.type]} {result} = 0;")
+    arguments = ", ".join((*(bare(expression(scope, each)) for each in call.arguments), f"&{result}"))
+    with function.block(f"if (!{scope.lanes.prefix}_{call.function}({arguments}))"):
+        fail(function, call.failure)

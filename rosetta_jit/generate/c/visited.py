@@ -1,0 +1,58 @@
+"""Functions that write messages within others, or measure them: one for each lane of such messages, which call each other.
+
+    int64 encode_kids(holder, object, bytes, end, failure, at, depth)       where the message ends, or -1 - site
+
+Each collects the fields of its object in a row of its own, a local. Messages within the object are reached where it has them: the start of
+their span is an address.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from rosetta_jit.backends.printing import Writer
+from rosetta_jit.generate.c.aligned import as_printed
+from rosetta_jit.generate.c.calls import SHARED_BY_VISITS
+from rosetta_jit.generate.c.decided import decided
+from rosetta_jit.generate.c.function import Function
+from rosetta_jit.generate.c.heads import declared, head
+from rosetta_jit.generate.c.positions import said_by
+from rosetta_jit.generate.c.statements import print_block
+from rosetta_jit.generate.descents import Descents, Visit
+from rosetta_jit.generate.reachable import reached, read_names
+from rosetta_jit.kernel.nodes import Block, Compare, Direction, Local
+from rosetta_jit.kernel.terms import END, index
+
+
+def print_visited(writer: Writer, descents: Descents, functions: Mapping[int, Function], direction: Direction) -> None:
+    """The functions of all lanes, which are declared before."""
+    heads = {lane: _head(function, lane, descents, direction) for lane, function in functions.items()}
+    if writer.lines:
+        writer.line()
+    writer.lines += [f"{text};" for text in heads.values()]
+    for lane, function in functions.items():
+        _print(writer, heads[lane], descents, descents.rows[lane], function, direction)
+
+
+def starts_of(visits: Mapping[str, Visit]) -> Iterable[str]:
+    """The locals that say where the messages of arrays begin."""
+    return (each.start.name for each in visits.values() if isinstance(each.start, Local))
+
+
+def _head(function: Function, lane: int, descents: Descents, direction: Direction) -> str:
+    lanes, name = function.scope.lanes, function.scope.locals.identifier
+    shared = declared(SHARED_BY_VISITS[function.role], direction, lanes)
+    own = [f"const {lanes.objects(lane)}::type &object", *(f"int64_t {name(each.name)}" for each in (descents.at, descents.depth))]
+    return f"static inline int64_t {function.role}_{lanes.rows(lane)}({', '.join((*shared, *own))})"
+
+
+def _print(writer: Writer, text: str, descents: Descents, block: Block, function: Function, direction: Direction) -> None:
+    scope, body = function.scope, reached(decided(block))
+    lanes, lane = scope.lanes, scope.lanes.subject
+    function.read = read_names(as_printed(body), starts_of(function.visits))
+    function.known = said_by((Compare("ge", descents.at, index(0)), Compare("le", descents.at, END)))
+    print_block(function, body)
+    head(
+        writer, text, scope, direction, (f"{lanes.type(lane)} given_row;", f"collect_{lanes.rows(lane)}(object, *holder, given_row.value);")
+    )
+    writer.lines += [*function.kept_lines(), "}"]

@@ -1,0 +1,137 @@
+"""Messages of LCM and CDR within others of their type, which encoders in C++ read where the object has them."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import struct
+import subprocess
+
+import pytest
+
+import rosetta_jit as rj
+from rosetta_jit.api.options import type_request
+from rosetta_jit.generate.build import Wishes, generated
+from tests.generate import cpp
+from tests.generate.driver import answers, harmed
+from tests.generate.test_cpp import BOTH, same
+
+LCM = """package t;
+struct leaf_t { double xs[2]; string names[2]; }
+struct other_t { int32_t count; node_t back[count]; int8_t last; }
+struct node_t {
+  int32_t count; node_t nodes[count]; string name; int16_t many; int32_t numbers[many]; leaf_t leaves[many]; other_t others[many];
+  int16_t last;
+}
+"""
+IDL = """module t {
+struct Node;
+struct Leaf { double x; string name; };
+struct Other { sequence<Node> back; octet last; };
+struct Node { sequence<Node> nodes; string name; sequence<long> numbers; sequence<Leaf> leaves; sequence<Other> others; short last; };
+};
+"""
+DEEPER = """#include HEADER
+#include <cstdio>
+int main()
+{
+    unit::codec codec;
+    unit::holder around;
+    around.count = 0;
+    std::string bytes;
+    for (int depth = 0; depth < 70; depth++) {
+        const auto written = codec.try_encode(around, bytes);
+        const auto size = codec.try_size(around);
+        if (!written || !size) {
+            std::printf("%d\\n%s\\n%s", depth, written.error().what().c_str(), size.error().what().c_str());
+            return 0;
+        }
+        unit::holder another;
+        another.count = 1;
+        another.nodes.push_back(std::move(around));
+        around = std::move(another);
+    }
+}
+"""
+SCHEMAS = {
+    "lcm": ("t.node_t", {"encoding": "lcm", "schema": {"t/x.lcm": LCM}}),
+    "cdr": ("t::Node", {"encoding": "cdr", "schema": {"t.idl": IDL}}),
+}
+
+
+def node(chance: random.Random, depth: int, *, wide: bool) -> dict[str, object]:
+    """A message with some within it, or with one within one within another."""
+    nodes = [node(chance, depth - 1, wide=wide) for _ in range(chance.randrange(4) if wide else 1)] if depth else []
+    many = chance.randrange(3) if wide else 0
+    back = [[node(chance, depth - 1, wide=True)] if wide and depth and chance.random() < 0.3 else [] for _ in range(many)]
+    text = "x" * chance.randrange(20)
+    of_lcm = {"leaves": [{"xs": [1.5, -2.0], "names": [text, "b"]}] * many, "count": len(nodes), "many": many}
+    return of_lcm | {
+        "nodes": nodes,
+        "name": text,
+        "numbers": [chance.randrange(1 << 31) for _ in range(many)],
+        "others": [{"back": each, "count": len(each), "last": 5} for each in back],
+        "last": -7,
+    }
+
+
+def as_cdr(value: dict[str, object]) -> dict[str, object]:
+    """The same without what CDR's type has not."""
+    nodes, others = value["nodes"], value["others"]
+    assert isinstance(nodes, list)
+    assert isinstance(others, list)
+    names = ("name", "numbers", "last")
+    leaves = [{"x": 2.5, "name": "a leaf"}] * len(others)
+    back = [{"back": [as_cdr(inner) for inner in each["back"]], "last": each["last"]} for each in others]
+    return {name: value[name] for name in names} | {"nodes": [as_cdr(each) for each in nodes], "leaves": leaves, "others": back}
+
+
+@cpp.needs_cpp
+@pytest.mark.parametrize("encoding", SCHEMAS)
+def test_messages_within_others(encoding, tmp_path):
+    type_, options = SCHEMAS[encoding]
+    decode, encode = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
+    chance = random.Random(encoding)
+    values = [node(chance, depth, wide=True) for depth in (0, 1, 4, 2, 0, 3)] + [node(chance, depth, wide=False) for depth in (63, 64)]
+    good = [bytes(encode(each if encoding == "lcm" else as_cdr(each))) for each in values]
+    deep = deeper(good[-1], encoding)
+    messages = [*good, *harmed([each for each in good if len(each) < 3000], 30, encoding), deep, *good]
+    texts = generated(type_request("decode", type_, options), "cpp", BOTH, "unit", Wishes())
+    assert "unit_nodes_objects::at(" in texts["unit.cpp"]
+    found = answers(cpp.program(tmp_path, cpp.write(tmp_path, texts), options=cpp.QUICK), messages)
+    same(found, decode, encode, messages)
+
+
+def deeper(message: bytes, encoding: str) -> bytes:
+    """A message with one more level than are read: another one around all that are there."""
+    if encoding == "lcm":
+        return message[:8] + struct.pack(">i", 1) + message[8:] + struct.pack(">i", 1) + b"\0" + struct.pack(">hh", 0, 0)
+    return message[:4] + struct.pack("<I", 1) + message[4:]
+
+
+@cpp.needs_cpp
+def test_an_object_that_is_too_deep(tmp_path):
+    """The depth is checked while an object is written, so that no further message is looked at."""
+    type_, options = SCHEMAS["lcm"]
+    (tmp_path / "deeper.cpp").write_text(DEEPER)
+    unit = cpp.write(tmp_path, generated(type_request("encode", type_, options), "cpp", ("encode",), "unit", Wishes()))
+    made = cpp.program(tmp_path, unit, options=cpp.QUICK, main=tmp_path / "deeper.cpp")
+    said = subprocess.run([made], check=True, capture_output=True, text=True).stdout
+    assert said.splitlines() == ["65", *["nesting at .nodes[].nodes: more than 64 structs within each other"] * 2]
+    value: dict[str, object] = {"count": 0, "nodes": []}
+    for _ in range(65):
+        value = {"count": 1, "nodes": [value]}
+    with pytest.raises(rj.EncodeError, match=r"nesting: .* `\.nodes\[\]\.nodes`"):
+        rj.Encoder.of(type_, **options)(value)
+
+
+ALIKE = "package t; struct node_t { int32_t count; node_t first[count]; node_t second[count]; }"
+
+
+@cpp.needs_cpp
+@pytest.mark.skipif(shutil.which("clang++") is None, reason="clang++ is not installed")
+def test_arrays_one_behind_the_other(tmp_path):
+    """Between them nothing is read, so that a state of the loop begins where the one before ends, which clang would complain of."""
+    options = {"encoding": "lcm", "schema": {"t/x.lcm": ALIKE}}
+    texts = generated(type_request("decode", "t.node_t", options), "cpp", BOTH, "unit", Wishes())
+    cpp.compiled("clang++", tmp_path, cpp.write(tmp_path, texts), "-fsyntax-only")
