@@ -87,6 +87,12 @@ def proven_once(of_all_processes):
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def seldom_collected():
+    """A search for garbage looks at much that pytest and the tests have made, and runs a function of hypothesis besides."""
+    gc.set_threshold(50_000, 20, 20)
+
+
 @pytest.fixture(scope="module", autouse=True)
 def little_to_collect():
     """Tests that ask for a collection wait for what their module has made, and not for all that the modules before it have."""
