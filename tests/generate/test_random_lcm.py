@@ -14,6 +14,7 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
 from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.cpp.walk import IDENTIFIER
 from tests.frameworks.lcm import declarations
 from tests.frameworks.lcm.lcm_files import LCM_GEN
 from tests.generate import cpp, native
@@ -71,6 +72,11 @@ def test_classes_of_our_own(found, seed, tmp_path_factory):
 @LONG
 @FOUND
 def test_classes_of_lcm_gen(found, seed, tmp_path_factory):
+    """Fields are called there as they are declared, which is refused of names that C++ may use itself; what lcm-gen makes of arrays as
+    long as a constant does not compile.
+    """
+    assume(not any(each.constants for each in found))
+    assume(all(IDENTIFIER.fullmatch(member.name) for each in found for member in each.members))
     if not native.finds("lcm/lcm_coretypes.h"):
         pytest.skip("LCM's headers are not installed")
     made, folder = Case(found, seed), tmp_path_factory.mktemp("theirs")
