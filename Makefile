@@ -32,8 +32,7 @@ demo: $(VENV)/.demo ## play the bundled recordings through compiled kernels; wri
 usecase: $(VENV)/.test ## a component on RSB moves a simulated iCub on YARP (a real one where `make yarp` has built it); writes a page
 	$(BIN)/python -m tests.usecase $(ARGS)
 
-# Each worker reads the modules of all tests, which pytest rewrites: what comes of that is kept, also where no bytecode may lie beside a module.
-test: export PYTHONPYCACHEPREFIX ?= $(abspath build/bytecode)
+# Each worker reads the modules of all tests, which pytest rewrites: what comes of that is kept beside them, as is that of installed packages.
 test: export PYTHONDONTWRITEBYTECODE :=
 test: check ## lint, check types, run all tests but the campaigns
 	$(BIN)/python -m pytest -m "not campaign" -n auto --dist loadfile $(ARGS)

@@ -6,8 +6,8 @@ import gc
 import os
 import pickle
 import sys
-from collections import Counter
-from functools import lru_cache
+from collections import Counter, OrderedDict
+from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 from shutil import rmtree
@@ -20,7 +20,7 @@ from rosetta_jit.generate import languages
 from rosetta_jit.generate.build import AheadOfTime, LowByteFirst
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.pipeline.build import Build
-from rosetta_jit.startup import entry_points
+from rosetta_jit.startup import entry_points, garbage
 from rosetta_jit.transports import installed as transports
 from tests.shared import FOLDER, HEADERS
 
@@ -65,19 +65,19 @@ def proven_once(of_all_processes):
     folder = of_all_processes / "proven"
     folder.mkdir(exist_ok=True)
 
-    @lru_cache(maxsize=200)
-    def known(name):
-        return pickle.loads((folder / name).read_bytes())  # noqa: S301 - ours
+    known = OrderedDict()
 
     def sharing(optimised):
         def once(build, kernel):
             # By its text: 0.0 and -0.0 are equal, but not the same.
             name = sha256(f"{optimised.__qualname__} {build.types.rules is None} {to_text(kernel)}".encode()).hexdigest()
-            if not (folder / name).exists():
-                made = folder / f"{name}.{os.getpid()}.{get_ident()}"
-                made.write_bytes(pickle.dumps(optimised(build, kernel)))
-                made.replace(folder / name)
-            return known(name)
+            made = known.get(name)
+            if made is None:
+                made = known[name] = read_or_written(folder / name, lambda: optimised(build, kernel))
+                if len(known) > 200:
+                    with suppress(KeyError):  # another thread has removed it
+                        known.popitem(last=False)
+            return made
 
         return once
 
@@ -85,6 +85,28 @@ def proven_once(of_all_processes):
         for each in (Build, AheadOfTime, LowByteFirst):
             patch.setattr(each, "_optimised", sharing(each._optimised))
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def seldom_collected():
+    """A search for garbage looks at much that pytest and the tests have made, and runs a function of hypothesis besides.
+
+    Each import of one of our modules would count all that `little_to_collect` has put aside.
+    """
+    gc.set_threshold(50_000, 20, 20)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(garbage, "_call_all_old", lambda: None)
+        yield
+
+
+def read_or_written(path, make):
+    """What a process has written there, or what ``make`` makes, for the others."""
+    if path.exists():
+        return pickle.loads(path.read_bytes())  # noqa: S301 - ours
+    made, own = make(), path.with_name(f"{path.name}.{os.getpid()}.{get_ident()}")
+    own.write_bytes(pickle.dumps(made))
+    own.replace(path)
+    return made
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -25,7 +25,7 @@ def share(kind, seconds):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_sharing(kind):
-    share(kind, 0.5)
+    share(kind, 0.15)
 
 
 @pytest.mark.campaign

@@ -11,20 +11,19 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.generate import driver
+from tests.generate.driver import CHECKED, NO_SCOPES
 from tests.shared import FOLDER, HEADERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 STRICT = ("-std=c++17", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
-SANITIZED = ("-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-QUICK = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-CALLED = ("--param=asan-instrumentation-with-call-threshold=0", "-fno-sanitize-address-use-after-scope")
-"""Accesses are checked by calls and not in line, and scopes without optimisation alone: that is compiled in two thirds of the time."""
-THOROUGH = ("-O2", *QUICK[1:], *CALLED)
-CAREFUL = ("-O1", "-fstrict-aliasing", *QUICK[1:], *CALLED)
+QUICK = ("-O0", *CHECKED)
+THOROUGH = ("-O2", *CHECKED, *NO_SCOPES)
+CAREFUL = ("-O1", "-fstrict-aliasing", *CHECKED, *NO_SCOPES)
 """What -O2 makes of objects of one class that are read as another, in two thirds of the time."""
-WATCHED = ("-O0", "-fsanitize=address")
+WATCHED = ("-O0", *driver.WATCHED)
 """The memory alone, for large units: they are compiled in half the time."""
 PLAIN = ("-O0",)
 OFTEN = (QUICK, THOROUGH, CAREFUL, WATCHED, PLAIN)
@@ -66,15 +65,20 @@ def program(
     name: str,
     *sources: str,
     compiler: str = "g++",
-    options: tuple[str, ...] = SANITIZED,
+    options: tuple[str, ...] = CAREFUL,
     main: Path = MAIN,
     units: Iterable[str] = (),
+    is_whole: bool = False,
 ) -> Path:
-    """The program around a unit, or around several that are written as one, which must not give a compiler cause to complain."""
+    """The program around a unit, or around several that are written as one, which must not give a compiler cause to complain.
+
+    A ``main`` that ``is_whole`` includes the unit's source.
+    """
     made = folder / f"{name}.{compiler}"
     words = [f'-DHEADER="{name}.hpp"', f"-DUNITS={''.join(f'EACH({each})' for each in units or (name,))}"]
     begun = read_once(folder, name, options) if compiler == "g++" and begins_with_unit(main) else ()
-    command = [compiler, *STRICT, *options, *begun, f"-I{folder}", *words, main, folder / f"{name}.cpp", *sources, "-lm", "-o", made]
+    files = [main, *([] if is_whole else [folder / f"{name}.cpp"]), *sources]
+    command = [compiler, *STRICT, *options, *begun, f"-I{folder}", *words, *files, "-lm", "-o", made]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert not done.stderr

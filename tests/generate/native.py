@@ -9,8 +9,14 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+
+from tests.generate import cpp
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 ROOT = Path(__file__).resolve().parents[2]
 PEER = ROOT / "tests" / "vectors" / "protobuf" / "peer.json"
@@ -57,6 +63,21 @@ def needs_protoc() -> None:
     """Skip where the real protoc is not installed."""
     if shutil.which("protoc") is None or not finds("google/protobuf/message.h"):
         pytest.skip("protoc and its library are not installed")
+
+
+def protoc(folder: Path, name: str, text: str) -> None:
+    """A schema's file, and the classes that the real protoc makes of it."""
+    needs_protoc()
+    (folder / f"{name}.proto").write_text(text)
+    subprocess.run(["protoc", "--cpp_out=.", f"{name}.proto"], cwd=folder, check=True)
+
+
+def program_of_protoc(folder: Path, unit: str, classes: str, options: tuple[str, ...], units: Iterable[str] = ()) -> Path:
+    """The program around a unit that fills protoc's classes, as one source: a compiler reads the headers of protobuf once."""
+    main = folder / "whole.cpp"
+    main.write_text(f'#include "{unit}.cpp"\n#include <{classes}.pb.cc>\n#include "{cpp.MAIN}"\n')
+    options = (*options, f"-isystem{folder}", "-Wno-subobject-linkage")
+    return cpp.program(folder, unit, "-lprotobuf", options=options, main=main, units=units, is_whole=True)
 
 
 OF = {"ros1": of_roscpp, "lcm": of_lcm, "protobuf": of_protoc}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import types
+from functools import lru_cache
 from typing import Any
 
 from rosetta_jit.generate.build import NO_WISHES, generated
@@ -17,11 +18,17 @@ def protobuf(body: str) -> dict[str, Any]:
     return {"encoding": "protobuf", "schema": {"t.proto": f'syntax = "proto3"; package t; {body}'}}
 
 
+@lru_cache(maxsize=16)
+def source_of(request, directions=BOTH, wishes=NO_WISHES) -> str:
+    """The source of the module for a request, which some tests read as well as run."""
+    return generated(request, "python", directions, "unit", wishes)["unit.py"]
+
+
 def module(request, directions=BOTH, wishes=NO_WISHES) -> Any:
     """The module that is generated for a request."""
     made = types.ModuleType("generated_unit")
     sys.modules[made.__name__] = made  # dataclasses look there for the names of types
-    exec(compile(generated(request, "python", directions, "unit", wishes)["unit.py"], "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
+    exec(compile(source_of(request, directions, wishes), "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
     return made
 
 

@@ -12,7 +12,7 @@ from rosetta_jit.api.options import request_of
 from rosetta_jit.generate.build import generated
 from tests.generate import cpp, lisp
 from tests.generate.driver import answers, driver, expected, harmed, needs_gcc, write
-from tests.generate.python import answer
+from tests.generate.python import answer, source_of
 
 FILES = {
     "m.bottle-schema": """"m" (("a" (:list :double)) ("n" (:list :int)) ("names" (:list :string)) ("steps" (:list :int))
@@ -77,7 +77,7 @@ def test_cpp_keeps_the_same(tmp_path, programs, messages):
 def test_python_keeps_the_same(monkeypatch, programs, messages):
     made = types.ModuleType("generated_unit")
     monkeypatch.setitem(sys.modules, made.__name__, made)
-    exec(compile(generated(REQUEST, "python", BOTH, "unit")["unit.py"], "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
+    exec(compile(source_of(REQUEST), "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
     assert [answer(made, each) for each in messages] == [expected(*programs, each) for each in messages]
 
 

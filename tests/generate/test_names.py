@@ -7,7 +7,6 @@ import keyword
 import random
 import re
 import shutil
-import subprocess
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -222,12 +221,9 @@ def one_by_one(through: Callable[[Case, Path], list[str]]) -> Through:
 
 def through_protoc(made: Case, folder: Path) -> list[str]:
     """Classes that the real protoc makes."""
-    native.needs_protoc()
-    (folder / "h.proto").write_text(made.text)
-    subprocess.run(["protoc", "--cpp_out=.", "h.proto"], cwd=folder, check=True)
-    subprocess.run(["g++", "-std=c++17", "-w", "-O0", "-c", "h.pb.cc"], cwd=folder, check=True)
+    native.protoc(folder, "h", made.text)
     name = cpp.write(folder, generated(made.request, "cpp", BOTH, "unit", Wishes(holder="protobuf", include="h.pb.h")))
-    return driver.answers(cpp.program(folder, name, "h.pb.o", "-lprotobuf", options=(*cpp.PLAIN, f"-isystem{folder}")), made.messages)
+    return driver.answers(native.program_of_protoc(folder, name, "h", cpp.PLAIN), made.messages)
 
 
 LANGUAGES = {

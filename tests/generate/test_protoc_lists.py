@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-
 import pytest
 
 import rosetta_jit as rj
@@ -48,17 +46,14 @@ def messages() -> list[bytes]:
 @cpp.needs_cpp
 @pytest.mark.parametrize("syntax", ["proto2", pytest.param("proto3", marks=pytest.mark.campaign)])
 def test_lists_and_unknown_fields(syntax, tmp_path):
-    native.needs_protoc()
     text = TEXT.format(syntax=syntax, optional="optional" if syntax == "proto2" else "")
-    (tmp_path / "t.proto").write_text(text)
-    subprocess.run(["protoc", "--cpp_out=.", "t.proto"], cwd=tmp_path, check=True)
-    subprocess.run(["g++", "-std=c++17", "-w", "-O0", "-c", "t.pb.cc"], cwd=tmp_path, check=True)
+    native.protoc(tmp_path, "t", text)
     options = {"encoding": "protobuf", "schema": {"t.proto": text}}
     request = type_request("decode", "t.M", options)
     name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit", Wishes(holder="protobuf", include="t.pb.h")))
     good = messages()
     given = [*good, *(each[:-1] for each in good if each), *good, *REFUSED, *(sized(34, each) for each in REFUSED)]
-    program = cpp.program(tmp_path, name, "t.pb.o", "-lprotobuf", options=(*QUICK, f"-isystem{tmp_path}"))
+    program = native.program_of_protoc(tmp_path, name, "t", QUICK)
     library = rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options)
     same(answers(program, given), *library, given)
     given = [*TOO_LONG, *(sized(34, each) for each in TOO_LONG)]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
@@ -34,11 +32,9 @@ def test_classes_are_found_whatever_packages_and_messages_are_called(tmp_path):
     }
     for unit, type_ in UNITS.items():
         assert f"using holder = {CLASSES[type_]};" in texts[type_][f"{unit}.hpp"]
-    native.needs_protoc()
-    (tmp_path / "lab.proto").write_text(SCHEMA)
-    subprocess.run(["protoc", "--cpp_out=.", "lab.proto"], cwd=tmp_path, check=True)
+    native.protoc(tmp_path, "lab", SCHEMA)
     name = cpp.write_as_one(tmp_path, "units", texts.values())
-    program = cpp.program(tmp_path, name, "lab.pb.cc", "-lprotobuf", options=(*cpp.PLAIN, "-w", f"-isystem{tmp_path}"), units=UNITS)
+    program = native.program_of_protoc(tmp_path, name, "lab", cpp.PLAIN, UNITS)
     for unit, type_ in UNITS.items():
         programs = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
         assert driver.answers(program, MESSAGES, unit=unit) == [driver.expected(*programs, each) for each in MESSAGES]

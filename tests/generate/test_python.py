@@ -20,7 +20,7 @@ from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.build import Wishes, generated
 from tests.generate.corpora import corpora, numbers_in_texts
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answer, answers_as_the_library, module, same
+from tests.generate.python import BOTH, answer, answers_as_the_library, module, same, source_of
 from tests.generate.test_c import CALLING, HOSTILE, SUBJECTS, TORSO
 from tests.generate.test_cpp import OUTER
 from tests.golden import GOLDEN, check_golden
@@ -96,7 +96,7 @@ def test_messages_within_others_are_written_from_the_objects():
     """Behind their lengths, whatever is there of them: fields with their default, -0.0, cases with the value 0, nothing at all."""
     given = {"encoding": "protobuf", "schema": {"n.proto": NESTED}}
     request = type_request("decode", "n.All", given)
-    assert "_encode_" not in generated(request, "python", ("encode",), "unit")["unit.py"]
+    assert "_encode_" not in source_of(request, ("encode",))
     unit, encode, decode = module(request), rj.Encoder.of("n.All", **given), rj.Decoder.of("n.All", **given)
     point, wide = unit.Point(x=-0.0, y=1.5, z=[-1, 300]), unit.Point(x=float("nan"), z=[*range(200)])
     assert unit.encode(unit.All()) == b""
@@ -236,7 +236,7 @@ def test_every_shipped_mapping_is_a_module(directions):
         name = str(path.relative_to(MAPPINGS))
         try:
             request = request_of("decode", {"encoding": "yarp3"} if name.startswith("yarp/") else {}, mapping=name)
-            text = generated(request, "python", directions, "unit")["unit.py"]
+            text = source_of(request, directions)
         except (MappingError, SchemaError) as error:
             if not re.search("wire-unsaid|not-generated|no-rules", str(error)):
                 raise
@@ -249,7 +249,7 @@ def test_every_shipped_mapping_is_a_module(directions):
 def test_docs_of_a_schema_are_docs():
     """What ends a string, or begins a line, in a schema does neither in the module."""
     schema = 'int32 x # """ + exit() #\\\nint32 y # \\"""\nstring s="""x\n'
-    text = generated(type_request("decode", "a/B", {"encoding": "ros1", "schema": schema}), "python", BOTH, "unit")["unit.py"]
+    text = source_of(type_request("decode", "a/B", {"encoding": "ros1", "schema": schema}))
     calls = {node.func.id for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
     assert "exit" not in calls
 

@@ -10,9 +10,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
+from tests.generate.python import BOTH, answers_as_the_library, module, protobuf, source_of
 
 FEW = "message M { string name = 1; repeated string tags = 2; map<int32, int32> counts = 3; repeated double numbers = 4; }"
 LINES = """
@@ -61,7 +61,7 @@ SEQUENCES = ("text", "raw", "numbers", "loose", "texts", "blobs", "messages", "c
 
 
 def test_what_is_empty_stays_in_the_object():
-    text = generated(type_request("encode", "t.M", protobuf(FEW)), "python", ("encode",), "unit")["unit.py"]
+    text = source_of(type_request("encode", "t.M", protobuf(FEW)), ("encode",))
     assert LINES in text
 
 

@@ -10,9 +10,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
+from tests.generate.python import BOTH, answers_as_the_library, module, protobuf, source_of
 
 BODY = """
     message Leaf { repeated string texts = 1; repeated int32 numbers = 2; }
@@ -136,7 +136,7 @@ def test_rows_without_lists_may_be_anywhere():
 
 
 def test_rows_say_nothing_of_lists_that_stay_empty():
-    text = generated(type_request("decode", "t.M", protobuf(BODY)), "python", BOTH, "unit")["unit.py"]
+    text = source_of(type_request("decode", "t.M", protobuf(BODY)))
     assert "if rows_texts_used > first" in text
 
 

@@ -11,9 +11,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
+from tests.generate.python import BOTH, answers_as_the_library, module, protobuf, source_of
 
 BODY = """
     enum E { ZERO = 0; ONE = 1; }
@@ -49,7 +49,7 @@ def test_fields_begin_where_they_come(wishes):
     """None, each alone, all of them; in any order, in pieces between others, with fields that the schema does not know; and broken."""
     given = protobuf(BODY)
     request = type_request("decode", "t.M", given)
-    assert "if not has_one:" in generated(request, "python", BOTH, "unit", wishes)["unit.py"]
+    assert "if not has_one:" in source_of(request, BOTH, wishes)
     unit, programs = module(request, BOTH, wishes), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
     parts = {name: bytes(programs[1](programs[1].holder_type.from_dict({name: value}))) for name, value in VALUES.items()}
     maps, again = [parts["counts"], parts["named"]], [part for name, part in parts.items() if name not in ("counts", "named")]
@@ -73,7 +73,7 @@ def test_what_never_came_is_each_objects_own():
 def test_lists_of_other_wires_are_unchanged():
     """Where a list is there whatever the message is, nothing asks whether it is."""
     given = {"encoding": "ros1", "schema": {"t/msg/M.msg": "string[] a\nfloat64[] b"}}
-    assert "has_" not in generated(type_request("decode", "t/M", given), "python", BOTH, "unit")["unit.py"]
+    assert "has_" not in source_of(type_request("decode", "t/M", given))
 
 
 def test_nothing_stays_of_a_message_that_contains_its_own_type():

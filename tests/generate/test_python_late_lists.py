@@ -13,9 +13,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
+from tests.generate.python import BOTH, answers_as_the_library, module, protobuf, source_of
 
 LISTS = " ".join(
     f"repeated {kind} l{number} = {number};" for number, kind in enumerate(("string", "bytes", "bool", "double", "sint32") * 4, 1)
@@ -181,7 +181,7 @@ def test_its_class_can_be_changed(unit):
 
 
 def test_few_lists_are_made_at_once():
-    text = generated(type_request("decode", "t.M", protobuf(f"message M {{ {LISTS} }}")), "python", BOTH, "unit")["unit.py"]
+    text = source_of(type_request("decode", "t.M", protobuf(f"message M {{ {LISTS} }}")))
     assert "_without_lists" not in text
 
 

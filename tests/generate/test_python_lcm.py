@@ -11,9 +11,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module
+from tests.generate.python import BOTH, answers_as_the_library, module, source_of
 
 ARRAYS = (NO_WISHES, Wishes(numpy=True))
 
@@ -23,7 +23,7 @@ def lcm(body: str) -> dict[str, Any]:
 
 
 def text_of(given: dict[str, Any], wishes: Wishes = NO_WISHES) -> str:
-    return generated(type_request("decode", "t.m", given), "python", BOTH, "unit", wishes)["unit.py"]
+    return source_of(type_request("decode", "t.m", given), BOTH, wishes)
 
 
 def compare(given: dict[str, Any], *values: dict[str, Any]) -> None:

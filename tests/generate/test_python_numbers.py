@@ -7,9 +7,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
+from tests.generate.python import BOTH, answers_as_the_library, module, protobuf, source_of
 
 BOOLS = {
     "ros1": "bool a\nbool[] some\nbool[3] few\nint16 n\nbool[36] many\nbool b\nbool c\n",
@@ -27,7 +27,7 @@ def test_bools_are_read_and_written_together(encoding, arrays):
     type_ = {"ros1": "t/T", "cdr": "t/msg/T", "lcm": "t.T"}[encoding]
     given = {"encoding": encoding, "schema": BOOLS[encoding]}
     request, programs = type_request("decode", type_, given), (rj.Decoder.of(type_, **given), rj.Encoder.of(type_, **given))
-    text = generated(request, "python", BOTH, "unit", Wishes(numpy=bool(arrays)))["unit.py"]
+    text = source_of(request, BOTH, Wishes(numpy=bool(arrays)))
     assert "for i in range" not in text
     unit = module(request, BOTH, Wishes(numpy=bool(arrays)))
     good = []
@@ -55,7 +55,7 @@ def test_few_numbers_of_numpy_are_pythons_where_they_are_packed():
     }
     request = type_request("decode", "t.T", given)
     unit, encode = module(request, BOTH, Wishes(numpy=True)), rj.Encoder.of("t.T", **given)
-    text = generated(request, "python", BOTH, "unit", Wishes(numpy=True))["unit.py"]
+    text = source_of(request, BOTH, Wishes(numpy=True))
     assert "*_few(p_" in text
     values = {"t": 1, "p": [1.5, -2.0, 3.0], "n": 4, "v": [1, -2, 300, 4], "q": [7, -8]}
     message = bytes(encode(encode.holder_type.from_dict(values)))
@@ -76,7 +76,7 @@ def test_lists_of_numbers_together_may_be_empty():
     given = {"encoding": "ros1", "schema": "time[] v\nduration[2] w\n"}
     request, programs = type_request("decode", "t/T", given), (rj.Decoder.of("t/T", **given), rj.Encoder.of("t/T", **given))
     unit = module(request)
-    assert "if count else []" in generated(request, "python", BOTH, "unit")["unit.py"]
+    assert "if count else []" in source_of(request)
     good = [bytes([count, 0, 0, 0]) + bytes(range(8 * count + 16)) for count in (0, 1, 3)]
     assert [len(unit.decode(each).v) for each in good] == [0, 1, 3]
     answers_as_the_library(unit, programs, harmed(good, 12, "times"))
@@ -110,7 +110,7 @@ def test_arrays_of_fixed_dimensions_are_written_from_the_objects():
         answers_as_the_library(unit, programs, harmed([message], 12, f"dimensions {arrays}"))
     for fields in ("byte b[2][3]; byte c[3];", "int8_t v[2][3]; byte b[2][3];"):
         few = {"encoding": "lcm", "schema": {"t.lcm": f"package t; struct T {{ {fields} }}"}}
-        assert "_size_1" not in generated(type_request("decode", "t.T", few), "python", BOTH, "unit")["unit.py"]
+        assert "_size_1" not in source_of(type_request("decode", "t.T", few))
 
 
 @pytest.mark.parametrize("arrays", ["", "numpy"])
@@ -121,7 +121,7 @@ def test_rows_of_several_dimensions_are_read_at_once(arrays):
     )
     given = {"encoding": "lcm", "schema": {"t.lcm": f"package t; struct T {{ int32_t n; {fields} float f[4][3]; }}"}}
     request, programs = type_request("decode", "t.T", given), (rj.Decoder.of("t.T", **given), rj.Encoder.of("t.T", **given))
-    text = generated(request, "python", BOTH, "unit", Wishes(numpy=bool(arrays)))["unit.py"]
+    text = source_of(request, BOTH, Wishes(numpy=bool(arrays)))
     borrow = text[text.index("def _borrow_1(") : text.index("def decode(")]
     assert "bytearray" not in borrow
     values = {
@@ -181,7 +181,7 @@ def test_arrays_of_numpy_in_arrays_are_joined_by_numpy():
     }
     given = {"encoding": "lcm", "schema": schema}
     request, programs = type_request("decode", "t.T", given), (rj.Decoder.of("t.T", **given), rj.Encoder.of("t.T", **given))
-    text = generated(request, "python", BOTH, "unit", Wishes(numpy=True))["unit.py"]
+    text = source_of(request, BOTH, Wishes(numpy=True))
     assert [text.count(each) for each in (" = _table(", ", 3)) if count", "is_bool=True)\n")] == [4, 1, 1]
     unit = module(request, BOTH, Wishes(numpy=True))
     values = {
@@ -227,7 +227,7 @@ def test_arrays_of_more_lengths_than_are_kept(encoding):
     type_, given = {"ros1": "t/T", "lcm": "t.T"}[encoding], {"encoding": encoding, "schema": schema[encoding]}
     request, programs = type_request("decode", type_, given), (rj.Decoder.of(type_, **given), rj.Encoder.of(type_, **given))
     unit, named = module(request), programs[1].holder_type.from_dict
-    assert "_writes_q" in generated(request, "python", BOTH, "unit")["unit.py"]
+    assert "_writes_q" in source_of(request)
     for count in (*range(300), 128, 1000, 0, 3):
         values = {"v": [-(3**30)] * count, "w": [7 * each for each in range(count)], **({"n": count} if encoding == "lcm" else {})}
         message = bytes(programs[1](named(values)))

@@ -8,9 +8,8 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import generated
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
+from tests.generate.python import answers_as_the_library, module, protobuf, source_of
 
 
 def test_short_integers_are_read_without_a_call():
@@ -20,7 +19,7 @@ def test_short_integers_are_read_without_a_call():
         "schema": {"t.proto": 'syntax = "proto3"; package t; message M { repeated string v = 1; int64 n = 2; }'},
     }
     request = type_request("decode", "t.M", given)
-    assert re.search(r"= data\[\w+\] if .*\w+ < end else 128\n", generated(request, "python", ("decode",), "unit")["unit.py"])
+    assert re.search(r"= data\[\w+\] if .*\w+ < end else 128\n", source_of(request, ("decode",)))
     unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
     values = [["", "a", "b" * 200], ["é", "", "x"], []]
     good = [bytes(programs[1](programs[1].holder_type.from_dict({"v": each, "n": -1}))) for each in values]
@@ -32,7 +31,7 @@ def test_bools_behind_tags_are_one_of_two_texts():
     """Those of which each has its own tag, of one byte and of two."""
     given = protobuf("message M { repeated bool v = 1 [packed = false]; repeated bool far = 40 [packed = false]; int32 n = 2; }")
     request = type_request("decode", "t.M", given)
-    assert r"[b'\xc0\x02\x01' if each else b'\xc0\x02\x00' for each in far" in generated(request, "python", BOTH, "unit")["unit.py"]
+    assert r"[b'\xc0\x02\x01' if each else b'\xc0\x02\x00' for each in far" in source_of(request)
     unit, encode = module(request), rj.Encoder.of("t.M", **given)
     for values in ({"v": [True, False, True], "far": [False, True], "n": 3}, {"v": [], "far": [True]}, {}):
         assert unit.encode(unit.M(**values)) == bytes(encode(encode.holder_type.from_dict(values)))
@@ -55,7 +54,7 @@ def test_messages_that_contain_their_own_type_are_written_by_functions(type_):
     values = [{**tree, "other": other, "named": {"a": leaf, "b": {"second": True}}}, leaf, {}]
     cases = values if type_ == "M" else [{"tree": each, "other": other, "n": 4} for each in values]
     request = type_request("decode", f"t.{type_}", protobuf(schema))
-    text = generated(request, "python", BOTH, "unit")["unit.py"]
+    text = source_of(request)
     assert "_encoded_" in text
     assert "_size_1" not in text
     programs = rj.Decoder.of(f"t.{type_}", **protobuf(schema)), rj.Encoder.of(f"t.{type_}", **protobuf(schema))
@@ -74,7 +73,7 @@ def test_messages_without_a_byte(type_, options):
     """They are objects of first values, and decoders that begin with much do not begin; but not where a message must have a field."""
     given, is_made_at_once = {"encoding": "protobuf", **options}, not options
     request = type_request("decode", type_, given)
-    assert ("if not end:" in generated(request, "python", BOTH, "unit")["unit.py"]) == is_made_at_once
+    assert ("if not end:" in source_of(request)) == is_made_at_once
     unit, programs = module(request), (rj.Decoder.of(type_, **given), rj.Encoder.of(type_, **given))
     answers_as_the_library(unit, programs, [b"", b"\x12\x00", b"\x0a"])
     if is_made_at_once:
@@ -87,7 +86,7 @@ def test_integers_of_several_bytes(type_):
     """Packed and behind tags, of one byte to ten, cut off anywhere, and of more than ten."""
     given = protobuf(f"message M {{ repeated {type_} v = 1; repeated {type_} apart = 2 [packed = false]; {type_} one = 3; }}")
     request = type_request("decode", "t.M", given)
-    assert "_several_bytes(" in generated(request, "python", BOTH, "unit")["unit.py"]
+    assert "_several_bytes(" in source_of(request)
     unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
     most = 31 if type_.endswith("32") else 63
     numbers = [sign * (1 << bit) - less for bit in range(most) for sign in (1, -1) for less in (0, 1)]
@@ -113,7 +112,7 @@ def test_texts_that_come_one_by_one_are_read_where_they_are_checked():
     request = type_request("decode", "t.M", given)
     assert re.search(
         r"try:\n +v\.append\(data\[\w+ : \w+\]\.decode\(\)\)\n +except UnicodeDecodeError:",
-        generated(request, "python", BOTH, "unit")["unit.py"],
+        source_of(request),
     )
     unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
     texts = ["", "a", "é" * 70, "b" * 200]
@@ -182,7 +181,7 @@ def test_bytes_that_come_one_by_one_are_appended_where_they_are():
         "message M { repeated bytes v = 1; S one = 2; int32 n = 3; repeated bytes w = 20; } message S { repeated bytes v = 1; }"
     )
     request = type_request("decode", "t.M", given)
-    assert "v.append(data[" in generated(request, "python", BOTH, "unit")["unit.py"]
+    assert "v.append(data[" in source_of(request)
     unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
     values = [b"", b"a", bytes(200), b"\xff" * 20000]
     good = bytes(programs[1](programs[1].holder_type.from_dict({"v": values, "one": {"v": values}, "n": 1, "w": values})))
@@ -211,7 +210,7 @@ def test_texts_stay_in_the_message_until_they_are_made():
         message S { string text = 1; optional string note = 2; bytes data = 3; }
     """
     given = protobuf(schema)
-    text = generated(type_request("decode", "t.M", given), "python", ("decode",), "unit")["unit.py"]
+    text = source_of(type_request("decode", "t.M", given), ("decode",))
     assert " _text(" not in text[text.index("def _borrow_1") :]
     unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
     inner = {"text": "é" * 70, "note": "", "data": b"\xff"}
@@ -301,7 +300,7 @@ def test_texts_and_cases_of_messages_are_read_where_they_are_checked():
         "oneof c { string t = 4; In i = 5; bool f = 6; In j = 7; bytes r = 8; } repeated In many = 9; }"
     )
     request = type_request("decode", "t.M", given)
-    text = generated(request, "python", BOTH, "unit")["unit.py"]
+    text = source_of(request)
     assert "message = bytearray(" not in text
     assert "m_s_text = data[" in text
     unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
@@ -331,7 +330,7 @@ def test_rows_of_many_numbers_are_read_by_one_call():
         "message M { repeated Q some = 1; map<string, Q> named = 2; repeated R rows = 3; map<int32, R> maps = 4; }"
     )
     request = type_request("decode", "t.M", given)
-    text = generated(request, "python", BOTH, "unit")["unit.py"]
+    text = source_of(request)
     assert text.count(" in _unpack_each(") == 4
     assert "some_a, some_h, some_b, " not in text
     unit, programs = module(request), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))

@@ -9,9 +9,8 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import generated
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module
+from tests.generate.python import answers_as_the_library, module, source_of
 
 REQUIRED = """syntax = "proto2"; package t;
 message M { required int32 x = 1; repeated M kids = 2; optional M only = 3; map<string, M> named = 4; required string z = 5; }
@@ -22,7 +21,7 @@ def test_fields_that_messages_of_their_own_type_must_have():
     """Each message is written by a function, which names the field that is not set."""
     given = {"encoding": "protobuf", "schema": {"t.proto": REQUIRED}}
     request, decode, encode = type_request("decode", "t.M", given), rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given)
-    text = generated(request, "python", BOTH, "unit")["unit.py"]
+    text = source_of(request)
     assert "def _encoded_kids(" in text
     unit = module(request)
     leaf = unit.M(x=1, z="leaf")

@@ -9,9 +9,9 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
-from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
+from rosetta_jit.generate.build import NO_WISHES, Wishes
 from tests.generate.driver import harmed
-from tests.generate.python import BOTH, answers_as_the_library, module, protobuf
+from tests.generate.python import BOTH, answers_as_the_library, module, protobuf, source_of
 
 KINDS = {
     "string": "text",
@@ -75,7 +75,7 @@ def test_what_comes_of_many_fields(label, wishes):
     given = protobuf(schema(label))
     programs = rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given)
     request = type_request("decode", "t.M", given)
-    assert "made = _new(M)" in generated(request, "python", BOTH, "unit", wishes)["unit.py"]
+    assert "made = _new(M)" in source_of(request, BOTH, wishes)
     unit, (_, encode) = module(request, BOTH, wishes), programs
     all_of, without_maps = values(label), [{name: value for name, value in each.items() if name not in MAPS} for each in values(label)]
     messages, parts = ([bytes(encode(encode.holder_type.from_dict(each))) for each in some] for some in (all_of, without_maps))
@@ -138,7 +138,7 @@ def test_presence_words_that_nothing_asks_for_are_not_kept():
     ):
         given = protobuf(f"{inner} message M {{ {body} }}")
         request, programs = type_request("decode", "t.M", given), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
-        text = generated(request, "python", BOTH, "unit")["unit.py"]
+        text = source_of(request)
         assert ("m_presence_0 = present" in text) == is_kept
         good = [b"", b"\x0a\x02\x08\x05\x12\x00", b"\x08\x05\x12\x02\x08\x01", b"\x08\x00", b"\x42\x00\x0a\x02\x10\x00"]
         answers_as_the_library(module(request), programs, harmed(good, 20, body))

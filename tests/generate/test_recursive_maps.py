@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
@@ -50,25 +48,23 @@ def same_key_twice():
     return twice, f"ok {bytes(encode(encode.holder_type.from_dict(VALUES[2]))).hex()}"
 
 
-def compare(folder, name, *sources, options=("-O0", "-Wshadow")):
+def compare(program):
     decode, encode = rj.Decoder.of("t.Value", **OPTIONS), rj.Encoder.of("t.Value", **OPTIONS)
     twice, once = same_key_twice()
     given = [*messages(), messages()[1][:-1], twice]
-    found = answers(cpp.program(folder, name, *sources, options=options), given)
+    found = answers(program, given)
     assert found == [*(expected(decode, encode, each) for each in given[:-1]), once]
 
 
 @cpp.needs_cpp
 def test_classes_of_our_own(tmp_path):
-    compare(tmp_path, cpp.write(tmp_path, generated(type_request("decode", "t.Value", OPTIONS), "cpp", ("decode", "encode"), "unit")))
+    name = cpp.write(tmp_path, generated(type_request("decode", "t.Value", OPTIONS), "cpp", ("decode", "encode"), "unit"))
+    compare(cpp.program(tmp_path, name, options=(*cpp.PLAIN, "-Wshadow")))
 
 
 @cpp.needs_cpp
 def test_classes_of_protoc(tmp_path):
-    native.needs_protoc()
-    (tmp_path / "t.proto").write_text(TEXT)
-    subprocess.run(["protoc", "--cpp_out=.", "t.proto"], cwd=tmp_path, check=True)
-    subprocess.run(["g++", "-std=c++17", "-w", "-O0", "-c", "t.pb.cc"], cwd=tmp_path, check=True)
+    native.protoc(tmp_path, "t", TEXT)
     wishes = Wishes(holder="protobuf", include="t.pb.h")
     name = cpp.write(tmp_path, generated(type_request("decode", "t.Value", OPTIONS), "cpp", ("decode", "encode"), "unit", wishes))
-    compare(tmp_path, name, "t.pb.o", "-lprotobuf", options=("-O0", f"-isystem{tmp_path}"))
+    compare(native.program_of_protoc(tmp_path, name, "t", cpp.PLAIN))

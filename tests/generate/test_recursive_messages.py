@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import subprocess
 from typing import TYPE_CHECKING
 
 import pytest
@@ -132,23 +131,26 @@ def given(name: str) -> list[bytes]:
 @cpp.needs_cpp
 @pytest.mark.parametrize("name", ["one", *(pytest.param(name, marks=pytest.mark.campaign) for name in SCHEMAS if name != "one")])
 def test_classes_of_our_own(name, tmp_path):
-    compare(tmp_path, name, Wishes())
+    compare(name, cpp.program(tmp_path, written(tmp_path, name, Wishes()), options=QUICK))
 
 
 @cpp.needs_cpp
 @pytest.mark.parametrize("name", [pytest.param("one", marks=pytest.mark.campaign), "several", "tree"])
 def test_classes_of_protoc(name, tmp_path):
-    native.needs_protoc()
-    (tmp_path / "t.proto").write_text(SCHEMAS[name][0])
-    subprocess.run(["protoc", "--cpp_out=.", "t.proto"], cwd=tmp_path, check=True)
-    subprocess.run(["g++", "-std=c++17", "-w", "-O0", "-c", "t.pb.cc"], cwd=tmp_path, check=True)
-    compare(tmp_path, name, Wishes(holder="protobuf", include="t.pb.h"), "t.pb.o", "-lprotobuf", options=WATCHED)
+    native.protoc(tmp_path, "t", SCHEMAS[name][0])
+    unit = written(tmp_path, name, Wishes(holder="protobuf", include="t.pb.h"))
+    compare(name, native.program_of_protoc(tmp_path, unit, "t", WATCHED))
 
 
-def compare(folder, name, wishes, *sources, options=QUICK):
-    """What the program says of messages is what the library says."""
-    of = {"encoding": "protobuf", "schema": {"t.proto": SCHEMAS[name][0]}}
-    unit = cpp.write(folder, generated(type_request("decode", "t.M", of), "cpp", BOTH, "unit", wishes))
-    messages = given(name)
-    found = answers(cpp.program(folder, unit, *sources, options=(*options, f"-isystem{folder}")), messages)
-    same(found, rj.Decoder.of("t.M", **of), rj.Encoder.of("t.M", **of), messages)
+def options_of(name):
+    return {"encoding": "protobuf", "schema": {"t.proto": SCHEMAS[name][0]}}
+
+
+def written(folder, name, wishes):
+    return cpp.write(folder, generated(type_request("decode", "t.M", options_of(name)), "cpp", BOTH, "unit", wishes))
+
+
+def compare(name, program):
+    """What a program says of messages is what the library says."""
+    decode, encode = (of("t.M", **options_of(name)) for of in (rj.Decoder.of, rj.Encoder.of))
+    same(answers(program, given(name)), decode, encode, given(name))

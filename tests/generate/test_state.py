@@ -14,7 +14,7 @@ from tests.generate import cpp, lisp
 from tests.generate.cpp import needs_cpp
 from tests.generate.driver import answers, compiled, driver, expected, harmed, needs_gcc, write
 from tests.generate.lisp import needs_sbcl
-from tests.generate.python import answer
+from tests.generate.python import answer, source_of
 
 FILES = {
     "m.bottle-schema": '"m" (("position" :double) ("seq" :int64) ("good" :bool))',
@@ -102,7 +102,7 @@ def test_cpp_keeps_what_the_library_keeps(tmp_path):
 def test_python_keeps_what_the_library_keeps(monkeypatch):
     made = types.ModuleType("generated_unit")
     monkeypatch.setitem(sys.modules, made.__name__, made)
-    exec(compile(generated(REQUEST, "python", BOTH, "unit")["unit.py"], "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
+    exec(compile(source_of(REQUEST), "unit.py", "exec"), made.__dict__)  # noqa: S102 - what is under test
     every = messages()
     for _ in range(2):
         assert [answer(made, each) for each in every] == wanted(every)
