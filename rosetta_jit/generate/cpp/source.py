@@ -239,7 +239,8 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
     for each in unused:
         walk.writer.line(f"static_cast<void>({each});")
     if lane and walk.direction == "encode":
-        walk.writer.line(f"rosetta_jit::detail::empty({reached});")
+        # A row of a function's own gets a value and no bytes: a compiler then keeps its fields in registers.
+        walk.writer.line("row = {};" if lane in walk.visited else f"rosetta_jit::detail::empty({reached});")
     walk.value(type_, unit.layout.lanes[lane].element, element, reached, Spot(target))
     if walk.direction == "encode" and is_local(walk, parts.printed["encode"].hidden):
         head = head.replace("\nvoid", "\nROSETTA_JIT_INLINE void")
