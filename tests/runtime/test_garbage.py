@@ -49,7 +49,6 @@ import subprocess
 import sys
 from rosetta_jit.startup.garbage import imported
 FREEZE
-gc.collect()
 has_frozen = gc.get_freeze_count() > 0
 module = imported("rosetta_jit.model.expr")
 assert any(each is module for each in gc.get_objects(generation=2)) == (not has_frozen)
@@ -61,3 +60,36 @@ assert imported("rosetta_jit.model.expr") is module and gc.isenabled()
 @pytest.mark.parametrize("freeze", ["", "gc.freeze()"])
 def test_what_is_imported_is_old_at_once(freeze):
     subprocess.run([sys.executable, "-c", IMPORTS.replace("FREEZE", freeze)], check=True)
+
+
+COUNTS = """
+import gc
+from rosetta_jit.startup.garbage import imported
+imported("rosetta_jit.model.expr")
+gc.collect(1)  # as it happens by itself where much is loaded
+FREEZE
+counted = []
+gc.get_freeze_count = lambda count=gc.get_freeze_count: counted.append(count()) or counted[-1]
+for name in ("rosetta_jit.startup.md5", "rosetta_jit.startup.sha"):
+    imported(name)
+    AGAIN
+assert counted == COUNTED, counted
+"""
+
+
+@pytest.mark.parametrize("freeze", ["gc.freeze()", "gc.collect(); gc.freeze()", "gc.freeze(); gc.collect(1); gc.collect(1)"])
+def test_what_a_process_has_frozen_is_not_counted(freeze):
+    text = COUNTS.replace("FREEZE", freeze).replace("AGAIN", "").replace("COUNTED", "[]")
+    subprocess.run([sys.executable, "-c", text], check=True)
+
+
+@pytest.mark.parametrize("again", ["gc.collect(0)", "gc.collect(1)"])
+def test_few_collections_leave_the_counts_as_they_are(again):
+    text = COUNTS.replace("FREEZE", "").replace("AGAIN", again).replace("COUNTED", "[0, 0]")
+    subprocess.run([sys.executable, "-c", text], check=True)
+
+
+def test_frozen_objects_are_counted_once():
+    """At most: where no collection came before, only their number says that there are any."""
+    text = COUNTS.replace("gc.collect(1) ", "").replace("FREEZE", "gc.freeze()").replace("AGAIN", "assert len(counted) == 1")
+    subprocess.run([sys.executable, "-c", text.replace("counted == COUNTED", "counted[0] > 0")], check=True)
