@@ -53,27 +53,16 @@ def object_at(place: str) -> Any:
 def _call_all_old() -> None:
     """Put what is new where old objects are, without a look at it; what a process has frozen stays so.
 
-    Python counts frozen objects one by one, which takes long where a server has frozen all that it had. So this asks for their number
-    only while the collector's own counts say that few, if any, can have been frozen since the last time.
+    Python counts frozen objects one by one, which takes long where a server has frozen all that it had: this asks until there are some.
     """
-    if [_history()] != _NONE_FROZEN:
+    if _FROZEN:
         return
     if gc.get_freeze_count():
-        _NONE_FROZEN.clear()
+        _FROZEN.append(True)
         return
     gc.freeze()
     gc.unfreeze()
-    _NONE_FROZEN[:] = [_history()]
 
 
-def _history() -> tuple[int, int]:
-    """Full collections so far, and how many of the middle generation came since the last one, less all there were.
-
-    Other collections change neither. `gc.freeze` sets the middle ones since the last full one to zero, and so changes the second.
-    """
-    middle, full = (generation["collections"] for generation in gc.get_stats()[1:])
-    return full, gc.get_count()[2] - middle
-
-
-_NONE_FROZEN = [(0, 0)]
-"""The history at which nothing was frozen, first that of a process that begins; empty where something was."""
+_FROZEN: list[bool] = []
+"""Not empty in a process that has frozen objects."""
