@@ -14,6 +14,7 @@ from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of, path_to
 from rosetta_jit.generate.cpp.always import spans
+from rosetta_jit.generate.cpp.between import between
 from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, kind_of
@@ -145,7 +146,7 @@ def row_struct(walk: Walk, listed: Listed, container: str = "") -> str:
     lane = listed.direct.lane
     lanes, type_ = walk.lanes, walk.lanes.type(lane)
     walk.writer, walk.depth, walk.in_rows = Writer(depth=2), 0, 1
-    walk.value(listed.element, walk.unit.layout.lanes[lane].element, lanes.all[lane].element, "row", Spot("element"))
+    between(walk, listed.element, walk.unit.layout.lanes[lane].element, lanes.all[lane].element, "row", Spot("element"))
     lies = [f"ROSETTA_JIT_LIES(Element, {field}, {type_}, {member})" for field, member in laid_out(walk, listed)]
     lines = [f"/* Elements of `{walk.unit.layout.lanes[lane].name}` and rows. */", f"struct {row_name(lanes, lane)} {{"]
     lines += ["    template <class Element> static constexpr bool lies()", "    {"]

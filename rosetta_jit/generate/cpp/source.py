@@ -15,6 +15,7 @@ from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
+from rosetta_jit.generate.cpp.between import between
 from rosetta_jit.generate.cpp.header import filled_in
 from rosetta_jit.generate.cpp.lists import row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
@@ -241,7 +242,7 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
     if lane and walk.direction == "encode":
         # A row of a function's own gets a value and no bytes: a compiler then keeps its fields in registers.
         walk.writer.line("row = {};" if lane in walk.visited else f"rosetta_jit::detail::empty({reached});")
-    walk.value(type_, unit.layout.lanes[lane].element, element, reached, Spot(target))
+    between(walk, type_, unit.layout.lanes[lane].element, element, reached, Spot(target))
     if walk.direction == "encode" and is_local(walk, parts.printed["encode"].hidden):
         head = head.replace("\nvoid", "\nROSETTA_JIT_INLINE void")
     return head, walk.writer.text()
