@@ -102,6 +102,8 @@ def _integer_binary(type_: Scalar, op: Arithmetic, left: int, right: int) -> int
     match op:
         case "add":
             return left + right
+        case "wrapping_add":
+            return wrapped(type_, left + right)
         case "sub":
             return left - right
         case "mul":

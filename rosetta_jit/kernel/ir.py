@@ -49,9 +49,10 @@ kernel that does not get to a Return changes none.
 
 **Arithmetic.** `add sub mul` of integers must not wrap, `div rem` must not divide by zero or overflow, shifts stay below the
 width: these are obligations that `verify` proves, like the bounds of every access. `Fits(op, a, b)` asks at run time whether an
-i64 operation stays in range. `div` and `rem` truncate toward zero. Float arithmetic is IEEE 754, round to nearest. `and or xor`
-of integers are bitwise, of bools logical and strict. Convert between integers keeps the low bits; from float to integer it
-truncates and saturates (NaN gives 0); everything else rounds to nearest. Which NaN arithmetic gives is not said.
+i64 operation stays in range. `wrapping_add` is the sum of unsigned integers, its carry dropped. `div` and `rem` truncate toward zero.
+Float arithmetic is IEEE 754, round to nearest. `and or xor` of integers are bitwise, of bools logical and strict. Convert between
+integers keeps the low bits; from float to integer it truncates and saturates (NaN gives 0); everything else rounds to nearest. Which
+NaN arithmetic gives is not said.
 
 `shr` is arithmetic for signed, logical for unsigned integers; `shl` drops high bits. `neg` and `abs` of integers must not wrap.
 `rem` of floats is C's fmod; `min(a, b)` of floats is `a` where `a < b`, else `b` (`max` with `>`). Comparisons with NaN are

@@ -9,7 +9,7 @@ from rosetta_jit.startup.dataclass import dataclass
 Scalar = Literal["bool", "i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64"]
 Order = Literal["<", ">"]
 Direction = Literal["decode", "encode", "size"]
-Arithmetic = Literal["add", "sub", "mul", "div", "rem", "and", "or", "xor", "shl", "shr", "min", "max", "atan2"]
+Arithmetic = Literal["add", "wrapping_add", "sub", "mul", "div", "rem", "and", "or", "xor", "shl", "shr", "min", "max", "atan2"]
 Comparison = Literal["eq", "ne", "lt", "le", "gt", "ge"]
 Function = Literal["neg", "not", "abs", "sqrt", "floor", "ceil", "trunc", "rint", "sin", "cos", "tan", "asin", "acos", "atan"]
 """The last six, and `atan2`, are those of the C library, of f64 alone; which NaN they give is not said."""

@@ -12,6 +12,7 @@ from rosetta_jit.kernel import ir, nodes
 
 SYMBOL = {
     "add": "+",
+    "wrapping_add": "+%",
     "sub": "-",
     "mul": "*",
     "div": "/",

@@ -231,6 +231,11 @@ def test_integer_arithmetic(type_):
     agree(expressions, type_, pairs)
 
 
+@pytest.mark.parametrize("type_", [each for each in NUMBERS if each[0] == "u"])
+def test_sums_that_wrap(type_):
+    agree([Binary("wrapping_add", *operands(type_))], type_, [(a, b) for a in NUMBERS[type_] for b in NUMBERS[type_]])
+
+
 TABLES = {"u8": (0, 1, 128, 255), "i16": (-(2**15), -1, 2**15 - 1), "u64": (0, 2**63, 2**64 - 1), "i64": (-(2**63), -1, 2**63 - 1)}
 TABLES |= {"i8": (-128, 127), "u16": tuple(range(0, 65536, 257)), "i32": (-(2**31), 5), "u32": (2**32 - 1,)}
 

@@ -56,6 +56,11 @@ def test_integer_arithmetic(type_):
     test_agreement.test_integer_arithmetic(type_)
 
 
+@pytest.mark.parametrize("type_", ["u64", "u8"])
+def test_sums_that_wrap(type_):
+    test_agreement.test_sums_that_wrap(type_)
+
+
 @pytest.mark.parametrize("type_", ["u8", "i16", "u64", "i64"])
 def test_tables(type_):
     test_agreement.test_tables(type_)

@@ -176,6 +176,7 @@ def test_arithmetic():
     refused(*load, expect(compare("ne", n, 0)), Let("x", Binary("div", n, index(-1))), DONE, match="overflow")
     verify(kernel((*load, expect(compare("ne", n, 0)), Let("x", Binary("div", END, n)), DONE)))
     refused(*load, Let("x", Binary("shl", index(1), n)), DONE, match="shift")
+    refused(*load, Let("x", Binary("wrapping_add", n, index(1))), DONE, match="wrapping_add of i64")
     verify(kernel((*load, expect(compare("gt", n, 0)), Let("x", Binary("rem", END, n)), DONE)))
     verify(kernel((*load, expect(compare("ne", n, 0)), expect(compare("gt", n, -2)), Let("x", Binary("div", END, n)), DONE)))
 

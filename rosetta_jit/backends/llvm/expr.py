@@ -242,6 +242,8 @@ def _binary(frame: Frame, op: str, left: ir.Value, right: ir.Value, type_: nodes
         return getattr(builder, FLOAT_BINARY[op])(left, right)
     if op in BITWISE:
         return getattr(builder, BITWISE[op])(left, right)
+    if op == "wrapping_add":
+        return builder.add(left, right)
     if op in ("add", "sub", "mul"):
         return getattr(builder, op)(left, right, flags=("nsw",) if type_ == "i64" else ())
     match op, is_signed(type_):

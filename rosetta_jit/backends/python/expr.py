@@ -159,6 +159,8 @@ def _binary(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
             return f"quotient({left}, {right})"
         case "rem", False:
             return f"remainder({left}, {right})"
+        case "wrapping_add", _:
+            return f'wrapped("{type_}", {left} + {right})'
         case "shl", _:
             return f'wrapped("{type_}", {left} << {right})'
         case _:

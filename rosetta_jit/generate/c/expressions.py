@@ -22,7 +22,8 @@ from rosetta_jit.kernel.terms import END, type_of
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.scope import Scope
 
-OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "rem": "%", "and": "&", "or": "|", "xor": "^", "shr": ">>"}
+BITWISE = {"and": "&", "or": "|", "xor": "^", "shr": ">>"}
+OPERATORS = {"add": "+", "wrapping_add": "+", "sub": "-", "mul": "*", "div": "/", "rem": "%", **BITWISE}
 LOGICAL = {"and": "&&", "or": "||", "xor": "!="}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
 OF_FLOATS = {"abs": "fabs", "sqrt": "sqrt", "floor": "floor", "ceil": "ceil", "trunc": "trunc", "rint": "rint"}

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.lisp.lanes import Lanes
     from rosetta_jit.generate.lisp.words import Names
 
-ARITHMETIC = {"add": "+", "sub": "-", "mul": "*", "div": "/", "rem": "-rem", "shl": "<<", "shr": ">>"}
+ARITHMETIC = {"add": "+", "wrapping_add": "+%", "sub": "-", "mul": "*", "div": "/", "rem": "-rem", "shl": "<<", "shr": ">>"}
 """Behind the name of an integer type: `i64+`."""
 OF_FLOATS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 BITWISE = {"and": "logand", "or": "logior", "xor": "logxor"}

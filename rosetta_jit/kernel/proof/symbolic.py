@@ -235,6 +235,8 @@ def _logical(op: nodes.Arithmetic, left: Formula, right: Formula) -> Formula:
 def _checked_binary(scope: Scope, op: nodes.Arithmetic, type_: nodes.Scalar, left: Linear, right: Linear) -> Linear:
     """``left op right``, with its obligations."""
     match op:
+        case "wrapping_add":
+            demand(limits(type_)[0] == 0, f"{op} of {type_}")
         case "add" | "sub":
             return in_range(scope, _integer_binary(scope, op, type_, left, right), type_)
         case "mul":
@@ -268,6 +270,8 @@ def _integer_binary(scope: Scope, op: nodes.Arithmetic, type_: nodes.Scalar, lef
     match op:
         case "add":
             return plus(left, right)
+        case "wrapping_add":
+            return _low_bits(scope, plus(left, right), type_)
         case "sub":
             return minus(left, right)
         case "mul":
@@ -354,10 +358,15 @@ def _convert(scope: Scope, target: nodes.Scalar, source: nodes.Scalar, value: Va
     if target == "bool":
         return negated(equal(linear(value), Linear(0)))
     low, high = limits(target)
-    same = All((shifted(linear(value), -low), shifted(times(linear(value), -1), high)))
-    if limits(source)[0] >= low and limits(source)[1] <= high:
-        return value
-    return value if scope.facts.proves(same) else scope.facts.named(("low bits", target, value), low, high)
+    is_wider = limits(source)[0] >= low and limits(source)[1] <= high
+    return value if is_wider else _low_bits(scope, linear(value), target)
+
+
+def _low_bits(scope: Scope, value: Linear, type_: nodes.Scalar) -> Linear:
+    """The low bits of an integer as one of a type: the integer itself where it fits."""
+    low, high = limits(type_)
+    fits = All((shifted(value, -low), shifted(times(value, -1), high)))
+    return value if scope.facts.proves(fits) else scope.facts.named(("low bits", type_, value), low, high)
 
 
 def _converted(scope: Scope, expr: nodes.Convert | nodes.Bits) -> Typed:

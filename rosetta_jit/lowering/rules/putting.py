@@ -26,8 +26,8 @@ from rosetta_jit.wire.codec import Path
 class Putting:
     """Sets elements by their numbers: ``element`` is the place of the one whose number is that of the variable.
 
-    Of integers that may not fit, `beyond` gathers the bits that are lost, so that no round waits for a check. Where there are such bits,
-    `check` makes all values once more, and refuses the first that does not fit.
+    Of integers that may not fit, `beyond` gathers the bits of how far each lies above the least one that fits, so that no round waits for
+    a check. Where such a bit is beyond those of an element, `check` makes all values once more, and refuses the first that does not fit.
     """
 
     target: HolderSide
@@ -38,7 +38,7 @@ class Putting:
 
     def __post_init__(self) -> None:
         if self.scalar in RANGES and self.scalar != "i64":
-            self.beyond = self.values.writer.var("beyond", index(0))
+            self.beyond = self.values.writer.var("beyond", Const("u64", 0))
 
     @property
     def scalar(self) -> Scalar:
@@ -52,8 +52,7 @@ class Putting:
         if self.beyond is not None and type_of(value) == "i64":
             wide = writer.let("wide", value)
             found = writer.let("number", Convert(self.scalar, wide))
-            lost = Binary("shr", wide, index(63)) if self.scalar == "u64" else Binary("xor", wide, Convert("i64", found))
-            writer.assign(self.beyond, Binary("or", self.beyond, lost))
+            writer.assign(self.beyond, Binary("or", self.beyond, self._above_least(wide)))
         else:
             found = writer.let("number", value if type_of(value) == self.scalar else inner.convert(value, self.scalar, "exact"))
         self.target.set_number(self.element, found, inner)
@@ -66,9 +65,16 @@ class Putting:
         writer = self.values.writer
         with writer.nested() as again:
             fill(self._refuse)
-        none_lost = Compare("eq", self.beyond, index(0))
-        writer.emit(If(Compare("ne", self.beyond, index(0)), block(again)))
-        self._expect(none_lost, self.values.where)  # others than before, if they fit the second time
+        low, high = RANGES[self.scalar]
+        size = Const("u64", min(high - low, 1 << 63))  # an int64 that is not negative fits all of uint64
+        writer.emit(If(Compare("ge", self.beyond, size), block(again)))
+        self._expect(Compare("lt", self.beyond, size), self.values.where)  # others than before, if they fit the second time
+
+    def _above_least(self, wide: Expr) -> Expr:
+        """How far an int64 lies above the least that fits, as a word: of one that lies below, the word wraps and is beyond all that fit."""
+        low, _ = RANGES[self.scalar]
+        distance = Convert("u64", wide)
+        return Binary("wrapping_add", distance, Const("u64", -low)) if low else distance
 
     def _refuse(self, number: Expr, value: Expr) -> Expr:
         """The element as it is set, if it fits."""

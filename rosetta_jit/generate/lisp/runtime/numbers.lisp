@@ -31,7 +31,7 @@
   (declare #.*proven* (type octets octets) (type fixnum at))
   (setf (aref octets at) (if value 1 0)))
 
-;;; Arithmetic of one type, whose results are known to fit: (i64+ a b), (u8* a b) and so on.
+;;; Arithmetic of one type, whose results are known to fit: (i64+ a b), (u8* a b) and so on. (u64+% a b) keeps the low bits.
 
 (defmacro define-arithmetic (type bits)
   (flet ((named (operator) (intern (format nil "~A~A" type operator))))
@@ -43,6 +43,8 @@
          `(the ,',type (values (truncate (the ,',type ,left) (the ,',type ,right)))))
        (defmacro ,(named '-rem) (left right)
          `(the ,',type (rem (the ,',type ,left) (the ,',type ,right))))
+       (defmacro ,(named '+%) (left right)
+         `(,',(intern (format nil "WRAP-~A" type)) (+ (the ,',type ,left) (the ,',type ,right))))
        (defmacro ,(named '-neg) (value)
          `(the ,',type (- (the ,',type ,value))))
        (defmacro ,(named '-abs) (value)

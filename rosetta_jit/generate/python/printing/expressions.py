@@ -202,6 +202,8 @@ def _binary(op: str, type_: nodes.Scalar, left: str, right: str) -> str:
             return f"_of_math(math.fmod, {left}, {right})" if type_ in FLOATS else f"_remainder({bare(left)}, {bare(right)})"
         case "atan2":
             return f"_of_math(math.atan2, {left}, {right})"
+        case "wrapping_add":
+            return wrapped(type_, f"({left} + {right})")
         case "shl":
             return wrapped(type_, f"({left} << {right})")
         case _:
