@@ -23,6 +23,11 @@ def test_a_spread_is_the_median_between_quartiles():
     assert Spread.of([7.0]) == Spread(7.0, 7.0, 7.0)
 
 
+def test_a_target_is_missed_from_the_third_digit_on():
+    assert [runs.row(median=each, at_most=1.0).met for each in (0.9, 1.004, 1.006)] == [True, True, False]
+    assert [runs.row(median=each, at_most=120.0).met for each in (120.4, 120.6)] == [True, False]
+
+
 def test_ratios_are_of_single_rounds():
     """A moment that slows both down threefold does not show."""
     assert ratio([10.0, 30.0, 10.0], [5.0, 15.0, 5.0]) == Spread(2.0, 2.0, 2.0)
