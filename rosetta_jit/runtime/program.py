@@ -244,7 +244,7 @@ class Program(ProgramBase):
     def new(self) -> Any:  # where there is compiled code, that does it, as an attribute of each program
         """A holder of one's own, with room for what has been decoded until now, unless that is much."""
         own, family = self._plan, self._loaded.holder_type.family_
-        return family.new(own if own.size_bytes > family.roomy.size_bytes else family.roomy)
+        return family.making.new(own if own.size_bytes > family.roomy.size_bytes else family.roomy)
 
     def _need(self, plan: Plan) -> None:
         """From now on, give new holders the room of a plan."""

@@ -13,6 +13,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.runtime.attributes.code import OFFSETS as IN_CODE
 from rosetta_jit.runtime.attributes.code import library
+from rosetta_jit.runtime.holder.objects.taking import Takers
 from rosetta_jit.runtime.lanes import Lanes
 from rosetta_jit.runtime.limits import MAX_ENDED
 from rosetta_jit.runtime.type_specs import slot_offset
@@ -244,3 +245,21 @@ def test_arrays_and_messages_of_a_holder_that_failed_are_refused(decoder, joint_
             read()
     made.clear()
     assert (list(made.name), list(names), header.frame_id) == ([], [], "")
+
+
+def test_plain_values_become_holders_in_compiled_code_from_the_second_on(monkeypatch):
+    """Whether or not somebody has called the class, and again where it has learned that messages need more room."""
+    in_python: list[object] = []
+    take_plain = Takers.take_plain
+    monkeypatch.setattr(Takers, "take_plain", lambda *given: in_python.append(given[2]) or take_plain(*given))
+    makes = rj.Decoder.of("sensor_msgs/msg/ChannelFloat32", encoding="cdr").holder_type
+    values = {"name": "x", "values": [3.5] * 12}
+    fresh = rj.Decoder.of("sensor_msgs/ChannelFloat32", encoding="ros1").holder_type
+    makes()
+    for holder_type in (makes, fresh):
+        assert [holder_type.from_dict(values).to_dict() for _ in range(4)] == [values] * 4
+        assert len(in_python) == 1
+        holder_type.from_dict(values).values = [3.5] * 100
+        assert [holder_type.from_dict(values).to_dict() for _ in range(4)] == [values] * 4
+        assert len(in_python) <= 2
+        in_python.clear()

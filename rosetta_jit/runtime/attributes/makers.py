@@ -67,7 +67,7 @@ def _made(maker: _Maker) -> Any:
     """A new holder, when there was another plan for the last one."""
     family: Any = cast("Any", maker.holder_type).family_
     own, roomy = maker.plan, maker.cell[0]
-    recipe: Any = family.recipe(own if own.size_bytes > roomy.size_bytes else roomy)
+    recipe: Any = family.making.recipe(own if own.size_bytes > roomy.size_bytes else roomy)
     _put(maker, recipe=recipe, seen=roomy)
     return functions()["spawn"](maker.holder_type, recipe)
 

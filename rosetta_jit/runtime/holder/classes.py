@@ -14,6 +14,7 @@ from rosetta_jit.runtime.attributes.code import functions
 from rosetta_jit.runtime.attributes.makers import call_as_any, class_of_holder_classes, let_call
 from rosetta_jit.runtime.attributes.names import take_names
 from rosetta_jit.runtime.holder.first_holders import begin_in_python
+from rosetta_jit.runtime.holder.making import Making
 from rosetta_jit.runtime.holder.message import Access, Family, Message, View, in_row, place
 from rosetta_jit.runtime.holder.record import Blob, Entry, Items, Numbers, Record, Text
 from rosetta_jit.runtime.lanes import Lanes
@@ -63,7 +64,7 @@ let_call(HolderClass)
 class HolderFamily(Family, Protocol):
     """What the holders of one type share; `rosetta_jit.runtime.holder.Family` is it."""
 
-    latest: tuple[Any, Any, Any]
+    making: Making
     plan: Plan
     cell: list[Plan]
     text: str
@@ -86,13 +87,8 @@ class HolderFamily(Family, Protocol):
     @property
     def givers(self) -> Any: ...
     def shown(self, record: Record) -> frozenset[str]: ...
-    def is_worth_compiling(self) -> bool: ...
-    def recipe(self, plan: Plan) -> tuple[Any, ...] | None: ...
     def plan_of(self, rows: int) -> Plan: ...
-    def offer(self) -> None: ...
-    def fresh(self) -> Any: ...
     def row(self, lanes: Lanes, row: int) -> View: ...
-    def new(self, plan: Plan) -> Any: ...
     @property
     def roomy(self) -> Plan: ...
     def pickled(self, contents: tuple[int, int, list[bytes]]) -> tuple[Any, ...]: ...
@@ -110,7 +106,7 @@ class Holder(Message, metaclass=HolderClass):
     def __init__(self) -> None:
         """An empty message. A holder that is made again is emptied."""  # and not replaced: compiled entries know where its lanes are
         family = self.family_
-        plan, recipe, equip = family.latest
+        plan, recipe, equip = family.making.latest
         if plan is family.plan and equip is not None:
             if not equip(self, recipe):
                 clear(self, None)
@@ -119,15 +115,15 @@ class Holder(Message, metaclass=HolderClass):
 
     def lay_out_(self, plan: Plan) -> bool:
         """Give the holder lanes, unless it has some."""
-        family = self.family_
-        if not family.is_worth_compiling():
+        family, making = self.family_, self.family_.making
+        if not making.is_worth_compiling():
             return begin_in_python(self, Lanes(plan, family.array_type), family.root)
-        recipe = family.recipe(plan)
+        recipe = making.recipe(plan)
         if recipe is not None:
             equip = functions()["equip"]
-            family.latest = plan, recipe, equip
+            making.latest = plan, recipe, equip
             if plan is family.plan:
-                family.offer()
+                making.offer()
             return equip(self, recipe)
         return in_row(self, Lanes(plan, family.array_type), family.root, 0)
 
@@ -194,7 +190,7 @@ class Holder(Message, metaclass=HolderClass):
             If a name or a value is not one of the type; its path says which.
         """
         family = cls.family_
-        holder = family.fresh()
+        holder = family.making.fresh()
         family.takers.take_plain(holder, plain)
         return holder
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import marshal
 import sys
 from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakValueDictionary
 
@@ -16,22 +15,22 @@ from rosetta_jit.model.layout import layout
 from rosetta_jit.model.serial import Plain, declared_in, from_plain, to_plain
 from rosetta_jit.model.types import Schema, Struct, Type
 from rosetta_jit.runtime.attributes import descriptors
-from rosetta_jit.runtime.attributes.code import functions, is_compiled, library
+from rosetta_jit.runtime.attributes.code import library
 from rosetta_jit.runtime.attributes.field_table import KeptFields, OfSequences
 from rosetta_jit.runtime.attributes.makers import make_quickly, set_recipe
 from rosetta_jit.runtime.attributes.methods import put
 from rosetta_jit.runtime.holder.classes import Holder, HolderClass, HolderFamily
+from rosetta_jit.runtime.holder.making import Making
 from rosetta_jit.runtime.holder.manners import PLAIN, Manners, manners_at
-from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, recipe, write_field
+from rosetta_jit.runtime.holder.message import OWN_NAMES, Access, View, in_row, read_field, write_field
 from rosetta_jit.runtime.holder.record import Entry, Record
 from rosetta_jit.runtime.holder.serialising import building_method, serialising_methods
 from rosetta_jit.runtime.holder.tree import Tree, written_within
 from rosetta_jit.runtime.lanes import MOST_UNASKED, Lanes
-from rosetta_jit.runtime.limits import FEW_HOLDERS, MAX_RECIPES
 from rosetta_jit.runtime.locks import shared_lock
 from rosetta_jit.runtime.looks.described import Constructor, Described
 from rosetta_jit.runtime.memory_plan import Plan, plan
-from rosetta_jit.runtime.row_counts import begun_as, initialised, roomier
+from rosetta_jit.runtime.row_counts import initialised, roomier
 from rosetta_jit.startup.cached import cached_property
 from rosetta_jit.startup.garbage import object_at
 from rosetta_jit.startup.late import Late
@@ -68,12 +67,7 @@ class Family:
         self._views: dict[str, type[View]] = {}
         self._of_structs, self._referred = dict[str, "type[Holder]"](), dict[str, list[str]]()
         self._shown_of: dict[int, frozenset[str]] = {}
-        self._made_in_python = 0
-        self._recipes: dict[int, tuple[Any, ...]] = {}
-        self.latest: tuple[Any, Any, Any] = None, None, None
-        self._of_rows = self.plan
-        self._begins_alike, self._offered = False, None
-        self._fresh: tuple[Plan | None, Callable[[], Any]] = None, object
+        self._of_rows, self.making = self.plan, Making(cast("Any", self))  # its properties are made once
         self.struct = cast("Struct", self.schema.resolve(self.type))
         self._holder: type[Holder] | None = None
         self._kept: KeptFields | None = None
@@ -111,7 +105,7 @@ class Family:
             self._kept = descriptors.take_slots(made, list(entries.values()))
             descriptors.describe(made, entries, shown, self._kept, plain_arrays=self.array_type is np.ndarray, has_methods=len(methods) > 1)
             make_quickly(made)
-            self._begins_alike = made.__init__ is Holder.__init__ or made.begins_alike_ is True
+            self.making.is_alike = made.__init__ is Holder.__init__ or made.begins_alike_ is True
         return made
 
     @property
@@ -185,16 +179,6 @@ class Family:
             kept = self._of_rows = plan(self.layout, rows, self.tree.initial)
         return kept
 
-    def offer(self) -> None:
-        """Let compiled code make the holders that the class makes without arguments, if they are all alike: as this first one."""
-        if not self._begins_alike:
-            return
-        prototype = type.__call__(self.holder)
-        first = begun_as(prototype.lanes_)
-        if first is not None and prototype.lanes_.plan is self.plan:
-            self._offered = recipe(self.plan, self.array_type, self.root, first)
-            set_recipe(self.holder, self._offered)
-
     @property
     def sameness(self) -> Sameness:
         """What tells whether two messages are the same; one, however many threads ask for it at once."""
@@ -248,44 +232,6 @@ class Family:
         if found is None:
             found = self._shown_of[id(record)] = frozenset(_shown(record, self.manners.base))
         return found
-
-    def is_worth_compiling(self) -> bool:
-        """Whether code for what makes holders is to be compiled, if there is none: the first few are made sooner in Python."""
-        if library() is None or is_compiled("equip"):
-            return True
-        self._made_in_python += 1
-        return self._made_in_python > FEW_HOLDERS
-
-    def recipe(self, plan: Plan) -> tuple[Any, ...] | None:
-        """What compiled code needs to make a holder of a plan; None where there is no such code."""
-        found = self._recipes.get(id(plan))
-        if found is not None and found[1] is plan:
-            return found
-        if library() is None:
-            return None
-        if len(self._recipes) >= MAX_RECIPES:
-            self._recipes.clear()
-        found = self._recipes[id(plan)] = recipe(plan, self.array_type, self.root)
-        return found
-
-    def new(self, plan: Plan) -> Any:
-        """A holder of a plan, of which nobody's constructor runs."""
-        found = self.recipe(plan)
-        if found is not None:
-            return functions()["spawn"](self.holder, found)
-        holder = self.holder.__new__(self.holder)
-        holder.lay_out_(plan)
-        return holder
-
-    def fresh(self) -> Any:
-        """A holder with the room that new ones have, of which nobody's constructor runs."""
-        plan, make = self._fresh
-        if plan is not self.plan:
-            plan = self.plan
-            recipe = self.recipe(plan)
-            make = partial(self.new, plan) if recipe is None else partial(functions()["spawn"], self.holder, recipe)
-            self._fresh = plan, make
-        return make()
 
     @cached_property
     def mark(self) -> str:
@@ -393,7 +339,7 @@ def revived(mark: str, text: str, manners: Manners | str, contents: tuple[int, i
         family = family_of(text, manners_at(manners) if isinstance(manners, str) else manners)
         if family.mark != mark and isinstance(manners, str):
             raise ValueError("another version of rosetta_jit has pickled this holder")
-    holder = family.new(family.plan)
+    holder = family.making.new(family.plan)
     with holder.lanes_ as lanes:
         lanes.words[VALID], lanes.words[WASTED], content = contents
         fill(lanes, content)

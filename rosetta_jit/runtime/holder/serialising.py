@@ -64,6 +64,9 @@ class Serialised(Protocol):
     @property
     def takers(self) -> Any: ...
 
+    @property
+    def making(self) -> Any: ...
+
 
 def serialising_methods(base: type, kinds: Mapping[str, Kind], family: Serialised) -> dict[str, Any]:
     """The methods of a holder class, of those of its base, that compiled code does, by name."""
@@ -78,6 +81,7 @@ def building_method(base: type, family: Serialised) -> Any:
         steps = family.takers.steps_of(dict)
         if steps is not None and steps.covers:
             put(made, needed=steps, program=steps.table)
+            family.making.offer_soon()
 
     return method("build", found.__func__, bind)
 
