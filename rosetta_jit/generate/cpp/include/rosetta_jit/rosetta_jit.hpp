@@ -1653,6 +1653,36 @@ template <class Container> struct objects {
     }
 };
 
+/* Messages of a list are made before they are read, some at first and then more: a count that a message only says takes no memory. */
+constexpr std::int64_t MESSAGES_AT_FIRST = 1024;
+
+template <class Container> ROSETTA_JIT_APART void make_messages(Container &target, std::int64_t count)
+{
+    resize_to(target, std::min(count, std::max(count_of(target), MESSAGES_AT_FIRST)));
+}
+
+/* Makes the first of so many. */
+template <class Container> ROSETTA_JIT_INLINE void begin_messages(Container &target, std::int64_t count)
+{
+    if (count_of(target) != count) {
+        make_messages(target, count);
+    }
+}
+
+template <class Container> ROSETTA_JIT_COLD void more_messages(Container &target, std::int64_t count)
+{
+    resize_to(target, std::min(count, 4 * count_of(target)));
+}
+
+/* One of so many, before which all others have been read. */
+template <class Container> ROSETTA_JIT_INLINE auto &message_of(Container &target, std::int64_t index, std::int64_t count)
+{
+    if (ROSETTA_JIT_UNLIKELY(std::begin(target) + static_cast<std::ptrdiff_t>(index) == std::end(target))) {
+        more_messages(target, count);
+    }
+    return std::begin(target)[static_cast<std::ptrdiff_t>(index)];
+}
+
 /* The one that `point_object` has pointed to. */
 template <class Object> struct object {
     using type = Object;
