@@ -14,6 +14,7 @@ from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import folded
+from rosetta_jit.kernel.terms import END, add
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.scope import Scope
@@ -78,7 +79,7 @@ def positions_found(function: Function, call: nodes.Call) -> frozenset[int]:
 def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
     """The messages of an array, one behind the other. Of a tree most have none. What they contain may move the rows at hand.
 
-    A list that is read gets some elements at first, and then more: a count that a message only says takes no memory.
+    A list that is read may get some elements at first, and then more: a count that a message only says takes little memory.
     """
     scope, lanes = function.scope, function.scope.lanes
     at, count = (bare(expression(scope, each)) for each in call.arguments)
@@ -87,7 +88,8 @@ def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
     function.line(f"int64_t {behind} = {at};")
     if list_:
         scope.takes("given_object")
-        function.line(f"rosetta_jit::detail::begin_messages({list_}, {count});")
+        around = bare(expression(scope, add(visit.depth, -1)))
+        function.line(f"rosetta_jit::detail::begin_messages({list_}, {count}, {expression(scope, END)} - {behind}, {around});")
     with function.block(f"if (ROSETTA_JIT_UNLIKELY({count} > 0))"):
         if visit.shallow is not None:
             fail_if(function, expression(scope, folded(nodes.Unary("not", visit.shallow.condition))), visit.shallow.failure)

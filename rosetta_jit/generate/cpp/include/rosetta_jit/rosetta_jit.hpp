@@ -1672,19 +1672,23 @@ template <class Container> struct objects {
     }
 };
 
-/* Messages of a list are made before they are read, some at first and then more: a count that a message only says takes no memory. */
+/* Messages of a list are made before they are read. Where a count that a message only says would take too much memory, some are made at first, and then more:
+   of lists that are left open within each other each takes no more than half of what the one around it may, and the outermost one a message for each byte. */
 constexpr std::int64_t MESSAGES_AT_FIRST = 1024;
 
-template <class Container> ROSETTA_JIT_APART void make_messages(Container &target, std::int64_t count)
+template <class Container>
+ROSETTA_JIT_APART void make_messages(Container &target, std::int64_t count, std::int64_t size, std::int64_t depth)
 {
-    resize_to(target, std::min(count, std::max(count_of(target), MESSAGES_AT_FIRST)));
+    const std::int64_t most = std::max(size >> std::min(depth, std::int64_t{62}), MESSAGES_AT_FIRST);
+    resize_to(target, std::min(count, std::max(count_of(target), most)));
 }
 
-/* Makes the first of so many. */
-template <class Container> ROSETTA_JIT_INLINE void begin_messages(Container &target, std::int64_t count)
+/* Makes the first of so many, for which so many bytes are left, and that lie so deep. */
+template <class Container>
+ROSETTA_JIT_INLINE void begin_messages(Container &target, std::int64_t count, std::int64_t size, std::int64_t depth)
 {
     if (count_of(target) != count) {
-        make_messages(target, count);
+        make_messages(target, count, size, depth);
     }
 }
 
