@@ -173,6 +173,20 @@ def test_counts_that_a_message_only_says(tmp_path):
 
 
 @cpp.needs_cpp
+def test_messages_that_have_none_within_them(tmp_path):
+    """They are read in the header; where one has some, or anything is wrong with it, it is read anew."""
+    options: dict[str, object] = {"encoding": "lcm", "schema": {"t/x.lcm": NESTED}}
+    decode, encode = rj.Decoder.of("t.nested_t", **options), rj.Encoder.of("t.nested_t", **options)
+    values = [{"count": count, "nodes": [{"count": 0, "nodes": []}] * count} for count in (2, 0, 0, 1, 3, 0)]
+    good = [bytes(encode(each)) for each in values]
+    messages = [*good, *harmed(good, 20, "none within"), *good]
+    texts = generated(type_request("decode", "t.nested_t", options), "cpp", BOTH, "unit", Wishes())
+    assert "resize_to(given_object.nodes, 0);" in texts["unit.hpp"]
+    found = answers(cpp.program(tmp_path, cpp.write(tmp_path, texts), options=cpp.QUICK), messages)
+    same(found, decode, encode, messages)
+
+
+@cpp.needs_cpp
 def test_a_list_that_becomes_long(tmp_path):
     """Lists of more messages than are made at first: all of them are read, in an object that has others from before."""
     type_, options = SCHEMAS["lcm"]

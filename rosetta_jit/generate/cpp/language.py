@@ -37,9 +37,10 @@ def files(unit: Unit) -> dict[str, str]:
     unit = without_clearing(unit) if inner is None else without_clearing(inner.of_message(unit), inner.unused)
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role, inner), dialect="c++")
     decoder = decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes, inner) if "borrow" in unit.kernels else None
+    short = decoder if decoder is None or inner is None else inner.without(*decoder)
     there = AtOnce(
-        "" if decoder is None else at_once(*decoder, open_decoder_of(unit, manners, parts.lanes)),
-        "" if decoder is None else of_no_elements_at_once(*decoder),
+        "" if short is None else at_once(*short, short if inner is not None else open_decoder_of(unit, manners, parts.lanes)),
+        "" if short is None else of_no_elements_at_once(*short),
         put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else "",
     )
     return {

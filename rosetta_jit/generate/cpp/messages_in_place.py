@@ -16,11 +16,11 @@ from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
 from rosetta_jit.generate.cpp.numbers_kept import with_numbers_kept
 from rosetta_jit.generate.cpp.opened import in_place, without_asking
 from rosetta_jit.generate.cpp.walk import Walk
-from rosetta_jit.generate.descents import Descents, NotNested, descended
+from rosetta_jit.generate.descents import Descents, NotNested, Visit, descended
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.kernel.ir import Kernel
-from rosetta_jit.kernel.nodes import Block, Const, Reserve
+from rosetta_jit.kernel.nodes import Advance, Block, Call, Const, Let, Local, Reserve, SetField, Stmt, Used
 from rosetta_jit.kernel.rewrite import with_bodies
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass, replace
@@ -66,6 +66,15 @@ class MessagesInPlace:
         kernel = with_bodies(unit.kernels["borrow"], tuple(each.body for each in self.descents))
         return replace(unit, kernels={**unit.kernels, "borrow": kernel})
 
+    def without(self, kernel: Kernel, lanes: Lanes) -> tuple[Kernel, Lanes]:
+        """The decoder of messages that have none within them: it opens the lists for these, and reads no element."""
+        visits, opened = self.descents[0].visits, dict[tuple[int, int], Straight]()
+        body = tuple(each for stmt in kernel.bodies[0] for each in _opening(stmt, visits))
+        for at in (at for at in self.lists if at[0] == 0):
+            lane = next(each.lane for each in visits.values() if each.place is not None and (each.place.lane, each.place.offset) == at)
+            opened[at] = Straight("", lane, empty=f"rosetta_jit::detail::resize_to({self.lists[at]}, 0);")
+        return replace(kernel, bodies=(body,)), replace(lanes, straight={**lanes.straight, **opened})
+
     def whole(self, kernel: Kernel) -> Kernel:
         """A decoder of the message with the blocks for rows as further bodies."""
         return replace(kernel, bodies=(*kernel.bodies, *(block for each in self.descents for block in each.rows.values())))
@@ -107,6 +116,20 @@ def messages_in_place(unit: Unit, manners: Manners) -> MessagesInPlace | None:
         for number, each in enumerate(descents)
     )
     return MessagesInPlace(tuple(rewritten), tuple(rows), lists)
+
+
+def _opening(stmt: Stmt, visits: Mapping[str, Visit]) -> Block:
+    """What opens a list, in place of a call that reads its messages."""
+    match stmt:
+        case Call(name, (begin, count), (behind,)) if name in visits:
+            visit = visits[name]
+            assert visit.place is not None
+            assert isinstance(visit.start, Local)
+            size = replace(visit.place, offset=visit.place.offset + 8)
+            taken = Reserve(visit.lane, count), Let(visit.start.name, Used(visit.lane)), Advance(visit.lane, count)
+            return *taken, SetField(visit.place, visit.start), SetField(size, count), Let(behind.name, begin)
+        case _:
+            return (stmt,)
 
 
 def _rows(unit: Unit, kernel: Kernel, blocks: list[Block], opened: Opened) -> tuple[Block, ...] | None:
