@@ -87,6 +87,14 @@ def _matrices(each: int) -> bytes:
 
 
 LCM_MATRICES = Subject("lcmtest.multidim_array_t", "lcm", _matrices(10))
+
+
+def _nodes(depth: int) -> bytes:
+    """A message with three within it, and so on."""
+    return struct.pack(">i", 3) + 3 * _nodes(depth - 1) if depth else bytes(4)
+
+
+LCM_NODES = Subject("exlcm.node_t", "lcm", bytes.fromhex("31fe946c75d6e4e7") + _nodes(4))
 FLAGS = 64
 FLAGS_T = Path(__file__).with_name("native") / "rj" / "flags_t.lcm"
 LCM_FLAGS = Subject(

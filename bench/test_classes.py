@@ -15,6 +15,7 @@ from bench.subjects import (
     LCM_EXAMPLE,
     LCM_FLAGS,
     LCM_MATRICES,
+    LCM_NODES,
     LISTS,
     MARKERS,
     ROS_2,
@@ -38,7 +39,8 @@ JOBS = {
 NESTED = {"DiagnosticArray, 20 statuses": DIAGNOSTICS, "MarkerArray, 10 markers": MARKERS}
 """Texts and structs in lists of lists; Debian has no struct of a TFMessage."""
 MATRICES = "LCM multidim_array_t, 10 x 10 x 10"
-WRITTEN_AS_QUICKLY = frozenset({*SEVERAL_VARINTS, *LISTS, *SHORT, *NESTED, MATRICES})
+NODES = "LCM node_t, a tree of 121"
+WRITTEN_AS_QUICKLY = frozenset({*SEVERAL_VARINTS, *LISTS, *SHORT, *NESTED, MATRICES, NODES})
 """What has a target for encoding, too."""
 WITHOUT_TARGET = frozenset({"Float64", "Bool", "LCM, 64 bools"})
 """What has none for decoding, as it takes as long in both, or longer: docs/cpp.md says why."""
@@ -56,6 +58,7 @@ LCM = {
     "LCM, 1,000 doubles": (LCM_DOUBLES, peers.IDL / "lcm" / "rjtest" / "doubles_t.lcm"),
     "LCM, 64 bools": (LCM_FLAGS, FLAGS_T),
     MATRICES: (LCM_MATRICES, peers.IDL / "lcm" / "lcmtest" / "multidim_array_t.lcm"),
+    NODES: (LCM_NODES, peers.IDL / "lcm" / "exlcm" / "node_t.lcm"),
 }
 
 

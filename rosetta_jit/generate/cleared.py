@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.kernel.ir import Kernel
@@ -43,16 +43,19 @@ def offsets_of(slot: Slot) -> list[int] | None:
     return found
 
 
-def settled(block: Block) -> frozenset[tuple[int, str]]:
-    """The fields of the message's row, by offset and type, that a body sets whatever the message is, before it reads them."""
+def settled(block: Block, lane: int = 0) -> frozenset[tuple[int, str]]:
+    """The fields of the message's row that a body sets whatever the message is, before it reads them: by offset and type.
+
+    Or those of the one row of another ``lane`` that a block is for.
+    """
     found, read = set[tuple[int, str]](), set[int]()
     for stmt in block:
         for each, _ in statements((stmt,)):
             parts = (part for expr in expressions_of(each) for part in subexpressions(expr))
-            read |= {part.place.offset for part in parts if isinstance(part, Get) and part.place.lane == 0}
+            read |= {part.place.offset for part in parts if isinstance(part, Get) and part.place.lane == lane}
             if isinstance(each, Return) and each is not block[-1]:
                 return frozenset(found)
-        if isinstance(stmt, SetField) and stmt.place.lane == 0 and stmt.place.offset not in read:
+        if isinstance(stmt, SetField) and stmt.place.lane == lane and stmt.place.offset not in read:
             found.add((stmt.place.offset, type_of(stmt.value)))
     return frozenset(found)
 
@@ -62,16 +65,17 @@ def clears(stmt: Stmt) -> bool:
     return isinstance(stmt, Fill) and stmt.target == Place(0, index(0)) and stmt.byte == 0
 
 
-def without_clearing(unit: Unit) -> Unit:
-    """A unit whose decoders do not clear the message's row where they set all of its fields anyway.
+def without_clearing(unit: Unit, unused: Collection[int] = ()) -> Unit:
+    """A unit whose decoders do not clear the message's row where they set all of its fields anyway, but for those at ``unused`` offsets.
 
     After a failure whoever calls them clears it. Decoders of several wires leave what others have set, and stay as they are.
     """
-    wanted = offsets_of(unit.layout.root)
-    if wanted is None:
+    offsets = offsets_of(unit.layout.root)
+    if offsets is None:
         return unit
+    wanted = frozenset(offsets).difference(unused)
     decoders = [role for role in ("decode", "borrow") if role in unit.kernels]
-    return replace(unit, kernels={**unit.kernels, **{role: _kernel(unit.kernels[role], frozenset(wanted)) for role in decoders}})
+    return replace(unit, kernels={**unit.kernels, **{role: _kernel(unit.kernels[role], wanted) for role in decoders}})
 
 
 def _kernel(kernel: Kernel, wanted: frozenset[int]) -> Kernel:

@@ -1,4 +1,4 @@
-"""Messages of LCM and CDR within others of their type, which encoders in C++ read where the object has them."""
+"""Messages of LCM and CDR within others of their type, which C++ reads and writes where the object has them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.generate.driver import answers, harmed
 from tests.generate.test_cpp import BOTH, same
 
 LCM = """package t;
-struct leaf_t { double xs[2]; string names[2]; }
+struct leaf_t { double xs[2]; string name; }
 struct other_t { int32_t count; node_t back[count]; int8_t last; }
 struct node_t {
   int32_t count; node_t nodes[count]; string name; int16_t many; int32_t numbers[many]; leaf_t leaves[many]; other_t others[many];
@@ -53,8 +53,40 @@ int main()
     }
 }
 """
+CLAIMS = """#include HEADER
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+static std::size_t taken = 0;
+void *operator new(std::size_t size)
+{
+    taken += size;
+    if (void *const found = std::malloc(size)) {
+        return found;
+    }
+    throw std::bad_alloc();
+}
+void operator delete(void *found) noexcept { std::free(found); }
+void operator delete(void *found, std::size_t) noexcept { std::free(found); }
+int main()
+{
+    std::vector<unsigned char> message;
+    for (int byte = std::getchar(); byte != EOF; byte = std::getchar()) {
+        message.push_back(static_cast<unsigned char>(byte));
+    }
+    unit::codec codec;
+    unit::holder holder;
+    taken = 0;
+    const auto read = codec.try_decode(message.data(), message.size(), holder);
+    std::printf("%s\\n%zu\\n", read ? "read" : read.error().what().c_str(), taken);
+}
+"""
+NESTED = """package t;
+struct nested_t { int32_t count; nested_t nodes[count]; }
+"""
 SCHEMAS = {
     "lcm": ("t.node_t", {"encoding": "lcm", "schema": {"t/x.lcm": LCM}}),
+    "lcm of fixed lists": ("t.node_t", {"encoding": "lcm", "schema": {"t/x.lcm": LCM.replace("string name; }", "string names[2]; }")}}),
     "cdr": ("t::Node", {"encoding": "cdr", "schema": {"t.idl": IDL}}),
 }
 
@@ -65,7 +97,7 @@ def node(chance: random.Random, depth: int, *, wide: bool) -> dict[str, object]:
     many = chance.randrange(3) if wide else 0
     back = [[node(chance, depth - 1, wide=True)] if wide and depth and chance.random() < 0.3 else [] for _ in range(many)]
     text = "x" * chance.randrange(20)
-    of_lcm = {"leaves": [{"xs": [1.5, -2.0], "names": [text, "b"]}] * many, "count": len(nodes), "many": many}
+    of_lcm = {"leaves": [{"xs": [1.5, -2.0], "name": text}] * many, "count": len(nodes), "many": many}
     return of_lcm | {
         "nodes": nodes,
         "name": text,
@@ -73,6 +105,17 @@ def node(chance: random.Random, depth: int, *, wide: bool) -> dict[str, object]:
         "others": [{"back": each, "count": len(each), "last": 5} for each in back],
         "last": -7,
     }
+
+
+def as_lcm(value: dict[str, object], *, fixed: bool) -> dict[str, object]:
+    """The same of LCM's type, whose leaves may have a list of two names."""
+    nodes, others, leaves = value["nodes"], value["others"], value["leaves"]
+    assert isinstance(nodes, list)
+    assert isinstance(others, list)
+    assert isinstance(leaves, list)
+    named = [{"xs": each["xs"], "names": [each["name"], "b"]} if fixed else each for each in leaves]
+    back = [{**each, "back": [as_lcm(inner, fixed=fixed) for inner in each["back"]]} for each in others]
+    return {**value, "nodes": [as_lcm(each, fixed=fixed) for each in nodes], "leaves": named, "others": back}
 
 
 def as_cdr(value: dict[str, object]) -> dict[str, object]:
@@ -93,20 +136,67 @@ def test_messages_within_others(encoding, tmp_path):
     decode, encode = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
     chance = random.Random(encoding)
     values = [node(chance, depth, wide=True) for depth in (0, 1, 4, 2, 0, 3)] + [node(chance, depth, wide=False) for depth in (63, 64)]
-    good = [bytes(encode(each if encoding == "lcm" else as_cdr(each))) for each in values]
+    fixed = encoding == "lcm of fixed lists"
+    good = [bytes(encode(as_cdr(each) if encoding == "cdr" else as_lcm(each, fixed=fixed))) for each in values]
     deep = deeper(good[-1], encoding)
     messages = [*good, *harmed([each for each in good if len(each) < 3000], 30, encoding), deep, *good]
     texts = generated(type_request("decode", type_, options), "cpp", BOTH, "unit", Wishes())
     assert "unit_nodes_objects::at(" in texts["unit.cpp"]
+    assert ("message_of(given_object.nodes," in texts["unit.cpp"]) == (not fixed)
     found = answers(cpp.program(tmp_path, cpp.write(tmp_path, texts), options=cpp.QUICK), messages)
     same(found, decode, encode, messages)
 
 
 def deeper(message: bytes, encoding: str) -> bytes:
     """A message with one more level than are read: another one around all that are there."""
-    if encoding == "lcm":
+    if encoding != "cdr":
         return message[:8] + struct.pack(">i", 1) + message[8:] + struct.pack(">i", 1) + b"\0" + struct.pack(">hh", 0, 0)
     return message[:4] + struct.pack("<I", 1) + message[4:]
+
+
+@cpp.needs_cpp
+def test_counts_that_a_message_only_says(tmp_path):
+    """Each of 64 messages within each other says that all bytes behind it are elements of its list."""
+    options: dict[str, object] = {"encoding": "lcm", "schema": {"t/x.lcm": NESTED}}
+    size = 1 << 20
+    start = bytes(rj.Encoder.of("t.nested_t", **options)({"count": 0, "nodes": []}))[:8]
+    message = start + b"".join(struct.pack(">i", size - 4 * level) for level in range(1, 65))
+    message += bytes(8 + size - len(message))
+    (tmp_path / "claims.cpp").write_text(CLAIMS)
+    unit = cpp.write(tmp_path, generated(type_request("decode", "t.nested_t", options), "cpp", ("decode",), "unit", Wishes()))
+    made = cpp.program(tmp_path, unit, options=cpp.QUICK, main=tmp_path / "claims.cpp")
+    said, taken = subprocess.run([made], input=message, check=True, capture_output=True).stdout.decode().splitlines()
+    with pytest.raises(rj.DecodeError) as error:
+        rj.Decoder.of("t.nested_t", **options)(message)
+    assert said.startswith(f"{error.value.kind} at {error.value.path}, byte {error.value.offset}: ")
+    assert int(taken) < 128 * len(message)
+
+
+@cpp.needs_cpp
+def test_messages_that_have_none_within_them(tmp_path):
+    """They are read in the header; where one has some, or anything is wrong with it, it is read anew."""
+    options: dict[str, object] = {"encoding": "lcm", "schema": {"t/x.lcm": NESTED}}
+    decode, encode = rj.Decoder.of("t.nested_t", **options), rj.Encoder.of("t.nested_t", **options)
+    values = [{"count": count, "nodes": [{"count": 0, "nodes": []}] * count} for count in (2, 0, 0, 1, 3, 0)]
+    good = [bytes(encode(each)) for each in values]
+    messages = [*good, *harmed(good, 20, "none within"), *good]
+    texts = generated(type_request("decode", "t.nested_t", options), "cpp", BOTH, "unit", Wishes())
+    assert "resize_to(given_object.nodes, 0);" in texts["unit.hpp"]
+    found = answers(cpp.program(tmp_path, cpp.write(tmp_path, texts), options=cpp.QUICK), messages)
+    same(found, decode, encode, messages)
+
+
+@cpp.needs_cpp
+def test_a_list_that_becomes_long(tmp_path):
+    """Lists of more messages than are made at first: all of them are read, in an object that has others from before."""
+    type_, options = SCHEMAS["lcm"]
+    decode, encode = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
+    leaf = node(random.Random(0), 0, wide=False)
+    counts = (3, 1023, 1024, 1025, 5000, 2, 4097, 0)
+    messages = [bytes(encode({**leaf, "nodes": [leaf] * count, "count": count})) for count in counts]
+    texts = generated(type_request("decode", type_, options), "cpp", BOTH, "unit", Wishes())
+    found = answers(cpp.program(tmp_path, cpp.write(tmp_path, texts), options=cpp.QUICK), messages)
+    same(found, decode, encode, messages)
 
 
 @cpp.needs_cpp

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from rosetta_jit.generate.c.expressions import expression
 from rosetta_jit.generate.c.function import Function, fail, fail_if, failed
 from rosetta_jit.generate.c.room import moved
@@ -12,9 +14,23 @@ from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import folded
+from rosetta_jit.kernel.terms import END, add
 
-SHARED_BY_VISITS: dict[Role, tuple[str, ...]] = {"encode": ("holder", "bytes", "end", "failure"), "size": ("holder", "failure")}
-"""What functions that write or measure messages within others are given, besides the message, where it begins, and how deep it lies."""
+if TYPE_CHECKING:
+    from rosetta_jit.generate.c.scope import Scope
+
+SHARED_BY_VISITS: dict[Role, tuple[str, ...]] = {
+    "borrow": ("bytes", "end", "failure"),
+    "encode": ("holder", "bytes", "end", "failure"),
+    "size": ("holder", "failure"),
+}
+"""What functions for messages within others are given, besides the message, where it begins, and how deep it lies."""
+
+
+def shared_by_visits(function: Function) -> tuple[str, ...]:
+    """The same of those of a function; such as read are given the holder only if lists of their objects are opened."""
+    opens = function.role == "borrow" and any(lane and straight.lane for (lane, _), straight in function.scope.lanes.straight.items())
+    return (*(("holder",) if opens else ()), *SHARED_BY_VISITS[function.role])
 
 
 def print_call(function: Function, call: nodes.Call) -> None:
@@ -61,24 +77,42 @@ def positions_found(function: Function, call: nodes.Call) -> frozenset[int]:
 
 
 def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
-    """The messages of an array, one behind the other. Of a tree most have none. What they contain may move the rows at hand."""
+    """The messages of an array, one behind the other. Of a tree most have none. What they contain may move the rows at hand.
+
+    A list that is read may get some elements at first, and then more: a count that a message only says takes little memory.
+    """
     scope, lanes = function.scope, function.scope.lanes
     at, count = (bare(expression(scope, each)) for each in call.arguments)
-    start, number = bare(expression(scope, visit.start)), scope.locals.identifier("i")
-    behind = scope.locals.identifier(call.results[0].name)
+    number, behind = scope.locals.identifier("i"), scope.locals.identifier(call.results[0].name)
+    list_ = "" if visit.place is None else lanes.messages[visit.place.lane, visit.place.offset]
     function.line(f"int64_t {behind} = {at};")
+    if list_:
+        scope.takes("given_object")
+        around = bare(expression(scope, add(visit.depth, -1)))
+        function.line(f"rosetta_jit::detail::begin_messages({list_}, {count}, {expression(scope, END)} - {behind}, {around});")
     with function.block(f"if (ROSETTA_JIT_UNLIKELY({count} > 0))"):
         if visit.shallow is not None:
             fail_if(function, expression(scope, folded(nodes.Unary("not", visit.shallow.condition))), visit.shallow.failure)
         with function.block(f"for (int64_t {number} = 0; {number} < {count}; {number}++)"):
-            shared = ", ".join(map(scope.takes, SHARED_BY_VISITS[function.role]))
-            arguments = (f"{lanes.objects(visit.lane)}::at({start}, {number})", behind, bare(expression(scope, visit.depth)))
-            function.line(f"{behind} = {function.role}_{lanes.rows(visit.lane)}({shared}, {', '.join(arguments)});")
+            shared = ", ".join(map(scope.takes, shared_by_visits(function)))
+            message = f"rosetta_jit::detail::message_of({list_}, {number}, {count})" if list_ else _written(scope, visit, number)
+            arguments = (message, behind, bare(expression(scope, visit.depth)))
+            function.line(f"{behind} = {visiting(function, visit.lane)}({shared}, {', '.join(arguments)});")
             with function.block(f"if ({behind} < 0)"):
                 function.line(f"return {behind};")
         for lane in sorted(lanes.moving):
             scope.moved.add(lane)
             function.line(moved(lanes, lane))
+
+
+def _written(scope: Scope, visit: Visit, number: str) -> str:
+    """A message that is written, or measured: the start of the span is the address of the first."""
+    return f"{scope.lanes.objects(visit.lane)}::at({bare(expression(scope, visit.start))}, {number})"
+
+
+def visiting(function: Function, lane: int) -> str:
+    """The function for a message of a lane; a kernel with several bodies has one for each."""
+    return "_".join((function.role, *filter(None, (function.body,)), function.scope.lanes.rows(lane)))
 
 
 def _site(problem: str, sites: tuple[int, ...]) -> str:

@@ -42,9 +42,9 @@ class Function:
 
     ``read`` are the locals whose values anything needs; ``finish`` are the lines before a return of success. ``is_routine``: it
     returns the numbers of its own sites. ``visits`` are the calls that write the messages of an array. ``numbers`` are the rows of the
-    file's table that sites of the kernel have got, ``origins`` what rules of the mapping name. ``role`` is what its kernel is for.
-    ``otherwise`` is what is done where a message cannot be, if nobody is told why. ``known`` are positions of the message where the next
-    statement stands, ``aligned`` other forms of values that the block's locals have.
+    file's table that sites of the kernel have got, ``origins`` what rules of the mapping name. ``role`` is what its kernel is for, ``body``
+    the number of the body, if that has several. ``otherwise`` is what is done where a message cannot be, if nobody is told why. ``known``
+    are positions of the message where the next statement stands, ``aligned`` other forms of values that the block's locals have.
     """
 
     scope: Scope
@@ -57,6 +57,7 @@ class Function:
     numbers: dict[int, int] = field(default_factory=lambda: {0: 0})
     origins: Sequence[Origin] = ()
     role: Role = "decode"
+    body: str = ""
     otherwise: str = ""
     known: Positions = NONE
     aligned: Mapping[str, nodes.Expr] = field(default_factory=dict[str, nodes.Expr])

@@ -65,10 +65,11 @@ class Printed:
     named: frozenset[int] = frozenset()
 
 
-def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Origin] = (), descents: Descents | None = None) -> Printed:
+def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Origin] = (), descents: Sequence[Descents] = ()) -> Printed:
     """The functions of a kernel that is for a message alone (`kernel.passes.alone`); their names begin with its role.
 
-    ``origins`` say which lines of the mapping stand beside the statements. With ``descents``, functions handle the messages within others.
+    ``origins`` say which lines of the mapping stand beside the statements. With ``descents``, one for each body, functions handle the
+    messages within others.
     """
     writer, support, hidden, named, routines = Writer(), set[str](), set[int](), set[int](), dict[str, Callable]()
     words = lanes.words() | function_names() | {f"{role}_{each.name}" for each in kernel.routines}
@@ -85,18 +86,19 @@ def print_kernel(kernel: Kernel, lanes: Lanes, role: Role, origins: Sequence[Ori
         routines[routine.name] = _routine(writer, role, kernel.direction, routine, function, inline)
     numbers = {0: 0}
 
-    def begun(subject: int = 0) -> Function:
-        visits = {} if descents is None else descents.visits
-        return Function(scope(subject), kernel.sites, routines, visits=visits, numbers=numbers, origins=origins, role=role)
+    bodies = [each.body for each in descents] or kernel.bodies
 
-    if descents is not None:
-        print_visited(writer, descents, {lane: begun(lane) for lane in descents.rows}, kernel.direction)
-    bodies = kernel.bodies if descents is None else (descents.body,)
-    attempts = tuple(_attempt(writer, role, kernel, number, body, begun()) for number, body in enumerate(bodies))
+    def begun(number: int, subject: int = 0) -> Function:
+        visits, own = descents[number].visits if descents else {}, str(number + 1) if len(bodies) > 1 else ""
+        return Function(scope(subject), kernel.sites, routines, visits=visits, numbers=numbers, origins=origins, role=role, body=own)
+
+    for number, each in enumerate(descents):
+        print_visited(writer, each, {lane: begun(number, lane) for lane in each.rows}, kernel.direction)
+    attempts = tuple(_attempt(writer, role, kernel, body, begun(number)) for number, body in enumerate(bodies))
     return Printed(writer.text(), attempts, tuple(numbers), frozenset(support), frozenset(hidden), frozenset(named))
 
 
-def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, block: Block, function: Function) -> Attempt:
+def _attempt(writer: Writer, role: Role, kernel: Kernel, block: Block, function: Function) -> Attempt:
     body, scope = reached(decided(block)), function.scope
     advanced = {each.lane for each in (stmt for stmt, _ in statements(body)) if isinstance(each, Advance)}
     counted = [lane for lane in counted_lanes(kernel, body) if lane < scope.lanes.own and not _is_forgotten(scope.lanes, role)]
@@ -106,7 +108,7 @@ def _attempt(writer: Writer, role: Role, kernel: Kernel, number: int, block: Blo
     print_block(function, body)
     if not leaves(body):
         function.line("return INT64_MIN; /* never reached: every path has returned */")
-    name = f"{role}_{number + 1}" if len(kernel.bodies) > 1 else f"{role}_message"
+    name = f"{role}_{function.body or 'message'}"
     parameters = tuple(each for each in SHARED if each in scope.parameters)
     listed = ", ".join(declared(parameters, kernel.direction, scope.lanes)) or "void"
     head(writer, f"static int64_t {name}({listed})", scope, kernel.direction)

@@ -44,7 +44,7 @@ def declared(parameters: tuple[str, ...], direction: Direction, lanes: Lanes) ->
     kinds = {
         "holder": f"{'const ' if reads and lanes.dialect == 'c' else ''}{lanes.prefix}{holder} *holder",
         "given_row": f"const {lanes.type(0)} &given_row",
-        "given_object": f"::{lanes.prefix}::holder &given_object",
+        "given_object": f"{lanes.objects(lanes.subject) + '::type' if lanes.subject else f'::{lanes.prefix}::holder'} &given_object",
         "bytes": f"{'' if direction == 'encode' else 'const '}unsigned char *restrict bytes",
         "end": "int64_t end",
         "failure": "struct failure *failure",

@@ -112,7 +112,8 @@ class Lanes:
     the object, and so are those of ``given`` ones, of which each message has one array. ``packed`` are loops that may copy all elements at
     once. ``shared`` begins the names of functions of the support, where they are those of a header. ``forward``: a message is written from
     its begin to its end, so that bytes behind those that are written are not in use. ``renamed`` are fields of the message's row, by
-    offset, whose paths have, as one word, that of another one: what they are called as locals.
+    offset, whose paths have, as one word, that of another one: what they are called as locals. ``messages`` are the lists of an object that
+    functions read message by message where they are, by the lane and the offset of their spans.
     """
 
     prefix: str
@@ -133,6 +134,7 @@ class Lanes:
     shared: str = ""
     forward: bool = True
     renamed: Mapping[int, str] = field(default_factory=dict[int, str])
+    messages: Mapping[tuple[int, int], str] = field(default_factory=dict[tuple[int, int], str])
 
     def stride(self, lane: int) -> int:
         """Bytes of a row."""

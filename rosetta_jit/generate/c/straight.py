@@ -29,7 +29,7 @@ def statement(scope: Scope, place: Place, value: Expr) -> str | None:
     for lane in {place.lane, straight.lane} & scope.lanes.opened:
         scope.rows(lane)
     scope.moved |= {straight.lane} & scope.lanes.opened
-    scope.takes("given_object" if place.lane == 0 or place.lane in scope.lanes.given else "holder")
+    scope.takes("given_object" if place.lane in {0, scope.lanes.subject, *scope.lanes.given} else "holder")
     words["index"] = place.row
     return Template(straight.statement).substitute({name: bare(expression(scope, each)) for name, each in words.items()})
 

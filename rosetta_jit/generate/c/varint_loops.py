@@ -173,7 +173,7 @@ def called(kernel: Kernel) -> frozenset[str]:
     routines, found = {each.name: each.body for each in kernel.routines}, set[str]()
     pending = [*kernel.bodies]
     while pending:
-        calls = {stmt.routine for stmt, _ in statements(pending.pop()) if isinstance(stmt, Call)} - REPLACED - found
+        calls = {stmt.routine for stmt, _ in statements(pending.pop()) if isinstance(stmt, Call)} & routines.keys() - REPLACED - found
         found |= calls
         pending += [routines[each] for each in calls]
     return frozenset(found)

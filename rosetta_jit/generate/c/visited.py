@@ -1,9 +1,9 @@
-"""Functions that write messages within others, or measure them: one for each lane of such messages, which call each other.
+"""Functions that read, write or measure messages within others: one for each lane of such messages, which call each other.
 
-    int64 encode_kids(holder, object, bytes, end, failure, at, depth)       where the message ends, or -1 - site
+    int64 encode_kids(holder, bytes, end, failure, object, at, depth)       where the message ends, or -1 - site
 
-Each collects the fields of its object in a row of its own, a local. Messages within the object are reached where it has them: the start of
-their span is an address.
+One that writes collects the fields of its object in a row of its own, a local, and the start of the span of further messages is their
+address. One that reads sets the fields of its object, whose lists have these messages.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.aligned import as_printed
-from rosetta_jit.generate.c.calls import SHARED_BY_VISITS
+from rosetta_jit.generate.c.calls import shared_by_visits, visiting
 from rosetta_jit.generate.c.decided import decided
 from rosetta_jit.generate.c.function import Function
 from rosetta_jit.generate.c.heads import declared, head
@@ -41,9 +41,11 @@ def starts_of(visits: Mapping[str, Visit]) -> Iterable[str]:
 
 def _head(function: Function, lane: int, descents: Descents, direction: Direction) -> str:
     lanes, name = function.scope.lanes, function.scope.locals.identifier
-    shared = declared(SHARED_BY_VISITS[function.role], direction, lanes)
-    own = [f"const {lanes.objects(lane)}::type &object", *(f"int64_t {name(each.name)}" for each in (descents.at, descents.depth))]
-    return f"static inline int64_t {function.role}_{lanes.rows(lane)}({', '.join((*shared, *own))})"
+    shared = shared_by_visits(function)
+    given = declared((*shared, "given_object"), direction, lanes) if direction == "decode" else declared(shared, direction, lanes)
+    given += [] if direction == "decode" else [f"const {lanes.objects(lane)}::type &object"]
+    own = [f"int64_t {name(each.name)}" for each in (descents.at, descents.depth)]
+    return f"static inline int64_t {visiting(function, lane)}({', '.join((*given, *own))})"
 
 
 def _print(writer: Writer, text: str, descents: Descents, block: Block, function: Function, direction: Direction) -> None:
@@ -52,7 +54,7 @@ def _print(writer: Writer, text: str, descents: Descents, block: Block, function
     function.read = read_names(as_printed(body), starts_of(function.visits))
     function.known = said_by((Compare("ge", descents.at, index(0)), Compare("le", descents.at, END)))
     print_block(function, body)
-    head(
-        writer, text, scope, direction, (f"{lanes.type(lane)} given_row;", f"collect_{lanes.rows(lane)}(object, *holder, given_row.value);")
-    )
+    collected = (f"{lanes.type(lane)} given_row;", f"collect_{lanes.rows(lane)}(object, *holder, given_row.value);")
+    head(writer, text, scope, direction, () if direction == "decode" else collected)
+    writer.lines += [f"    int64_t {lanes.used(each)} = 0;" for each in sorted(scope.counted)]
     writer.lines += [*function.kept_lines(), "}"]

@@ -103,7 +103,7 @@ def _nested(walk: Walk, type_: Type, member: Member, element: object, row: str, 
 def _sequence(walk: Walk, type_: String | Bytes | Array, slot: Span, row: str, spot: Spot) -> None:
     """Numbers, a text, bytes; or a list of anything else, element by element."""
     lane = walk.lanes.rows(slot.lane)
-    if slot.lane in walk.direct or (walk.direction == "decode" and slot.lane in walk.opened):
+    if slot.lane in walk.direct or (walk.direction == "decode" and slot.lane in walk.opened | walk.visited):
         return
     if slot.lane in walk.within or slot.lane in walk.visited:
         walk.lines("list within", spot, row=row)

@@ -18,17 +18,22 @@ from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.cpp.messages_in_place import MessagesInPlace
 
 
 OBJECT = "given_object"
 
 
-def decoder_of(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes) -> tuple[Kernel, Lanes]:
-    """The kernel of such a decoder, and how it reaches the fields."""
+def decoder_of(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, inner: MessagesInPlace | None = None) -> tuple[Kernel, Lanes]:
+    """The kernel of such a decoder, and how it reaches the fields; its last bodies are for ``inner`` messages that it reads in place."""
     walk = Walk(unit, lanes, manners, "decode")
     lists = opened_lists(walk, OBJECT)
     kernel = with_numbers_apart(kernel, unit.layout, {lane for each in lists for lane in each.within})
     found, reached = _in_place(walk, kernel, lists)
+    if inner is not None:
+        found, lists = inner.whole(found), [*lists, *inner.rows]
+        straight, opened = {**reached.straight, **inner.straight}, reached.opened | inner.opened
+        reached = replace(reached, straight=straight, opened=opened, messages=inner.lists)
     return found, replace(reached, packed=packed_lists(walk, found, lists))
 
 

@@ -14,6 +14,7 @@ from rosetta_jit.generate.cpp.at_once import at_once, of_no_elements_at_once
 from rosetta_jit.generate.cpp.decoder import decoder_of, open_decoder_of
 from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.manners import MANNERS, Manners
+from rosetta_jit.generate.cpp.messages_in_place import MessagesInPlace, messages_in_place
 from rosetta_jit.generate.cpp.messages_within import descents_of
 from rosetta_jit.generate.cpp.opened import without_asking, without_counting
 from rosetta_jit.generate.cpp.put_at_once import put_at_once
@@ -31,17 +32,20 @@ SHARED = "rosetta_jit/rosetta_jit.hpp"
 
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
-    manners, unit = _manners(unit), without_clearing(unit)
-    parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role), dialect="c++")
-    decoder = decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes) if "borrow" in unit.kernels else None
+    manners = _manners(unit)
+    inner = messages_in_place(unit, manners)
+    unit = without_clearing(unit) if inner is None else without_clearing(inner.of_message(unit), inner.unused)
+    parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role, inner), dialect="c++")
+    decoder = decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes, inner) if "borrow" in unit.kernels else None
+    short = decoder if decoder is None or inner is None else inner.without(*decoder)
     there = AtOnce(
-        "" if decoder is None else at_once(*decoder, open_decoder_of(unit, manners, parts.lanes)),
-        "" if decoder is None else of_no_elements_at_once(*decoder),
+        "" if short is None else at_once(*short, short if inner is not None else open_decoder_of(unit, manners, parts.lanes)),
+        "" if short is None else of_no_elements_at_once(*short),
         put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else "",
     )
     return {
         f"{unit.name}.hpp": header(unit, manners, there),
-        f"{unit.name}.cpp": source(unit, parts, manners, None if decoder is None else decoder[0]),
+        f"{unit.name}.cpp": source(unit, parts, manners, None if decoder is None else decoder[0], inner),
         SHARED: (INCLUDE / SHARED).read_text("utf-8"),
     }
 
@@ -66,8 +70,11 @@ def _manners(unit: Unit) -> Manners:
     return manners
 
 
-def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: Role) -> Printed:
-    """The functions of a kernel; those of encoders are given the message's row, and addresses, those of decoders the object."""
+def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: Role, inner: MessagesInPlace | None) -> Printed:
+    """The functions of a kernel; those of encoders are given the message's row, and addresses, those of decoders the object.
+
+    ``inner`` are messages within others that decoders read in place.
+    """
     origins = unit.origins.get(role, ())
     if kind_of(role) in ("encode", "size"):
         walk, kernel = reader(unit, lanes, manners), undamaged_kernel(kernel)
@@ -75,8 +82,9 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
         forward = not unit.layout.recursive
         lanes = replace(lanes, addressed=walk.addressed, viewed=views, within=within, row=True, forward=forward)
         moving = frozenset(copied_lanes(lanes, directs_of(walk, "source"), walk)) - views
-        return print_kernel(kernel, replace(lanes, moving=moving), role, origins, descents_of(unit).get(role))
-    kernel, lanes = decoder_of(unit, manners, kernel, lanes)
-    kernel = without_asking(kernel, lanes.opened)
-    kernel = kernel if wire_of(role) else without_counting(kernel, lanes.given)
-    return print_kernel(kernel, lanes, role, origins)
+        descents = descents_of(unit).get(role)
+        return print_kernel(kernel, replace(lanes, moving=moving), role, origins, () if descents is None else (descents,))
+    found, lanes = decoder_of(unit, manners, kernel, lanes, inner)
+    found = without_asking(found, lanes.opened)
+    found = found if wire_of(role) else without_counting(found, lanes.given)
+    return print_kernel(found, lanes, role, origins, () if inner is None else inner.parted(found))

@@ -89,6 +89,23 @@ def opened_lists(walk: Walk, at: str, typed: str = HOLDER, *, with_taken: bool =
     return found
 
 
+def row_in_place(walk: Walk, lane: int, struct: str, at: str, typed: str) -> Opened | None:
+    """The same of a message within others, which is in a row of a ``lane`` by itself; None if something must stay in the row.
+
+    Lists of further messages within it are ``walk.visited``, and nothing sets them.
+    """
+    opened = Opened(at, lane)
+    slot = walk.unit.layout.lanes[lane].element
+    return opened if _value(walk, opened, Ref(struct), slot, _Place(Spot(at), Spot(typed), lane)) else None
+
+
+def messages_of(walk: Walk, lane: int, struct: str, at: str) -> Iterator[tuple[int, Span, Spot]]:
+    """The lists of messages within others that an object has in any case: the lane of its row, the span in that, and the list."""
+    for type_, slot, place in _spans(walk, Ref(struct), walk.unit.layout.lanes[lane].element, _Place(Spot(at), Spot(HOLDER), lane)):
+        if slot.lane in walk.visited and isinstance(walk.unit.schema.resolve(type_), Array):
+            yield lane, slot, Spot(walk.text("direct", place.spot))
+
+
 def spans_of(walk: Walk, at: str) -> Iterator[tuple[Type, Span, Spot]]:
     """What has a length and is in every message, of an object that statements call ``at``."""
     place = _Place(Spot(at), Spot(HOLDER), 0)
@@ -121,6 +138,8 @@ def _members(walk: Walk, type_: Type, slot: Slot, place: _Place) -> Iterator[tup
 def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) -> bool:
     """Whether a list can be opened, as far as types say; ``opened`` gets what sets it."""
     resolved, layout = walk.unit.schema.resolve(type_), walk.unit.layout.lanes[span.lane]
+    if span.lane in walk.visited:
+        return True
     is_shown = walk.text("laid out", place.spot) != ""
     if not isinstance(resolved, Array) or layout.links is not None or not is_shown:
         return False

@@ -15,6 +15,7 @@ from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of
 from rosetta_jit.model.layout import Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Type, Union
+from rosetta_jit.startup.dataclass import replace
 
 HOLDER = "std::declval<const holder &>()"
 PLAIN = "std::remove_cv_t<std::remove_reference_t<decltype({})>>"
@@ -36,9 +37,10 @@ def visited_lanes(unit: Unit) -> frozenset[int]:
     return frozenset(lane for each in descents_of(unit).values() for lane in each.rows)
 
 
-def classes(walk: Walk) -> str:
-    """What reaches these messages; ``walk`` is that of an encoder."""
-    found = _classes(walk, Ref(walk.unit.type), walk.unit.layout.root, Spot(HOLDER), set()) if walk.visited else ()
+def classes(walk: Walk, visited: frozenset[int]) -> str:
+    """What reaches ``visited`` messages, which are read or written where they are; ``walk`` is that of an encoder."""
+    walk = replace(walk, visited=visited)
+    found = _classes(walk, Ref(walk.unit.type), walk.unit.layout.root, Spot(HOLDER), set()) if visited else ()
     lines = [f"using {walk.lanes.objects(lane)} = rosetta_jit::detail::{class_};" for lane, class_ in found]
     return "\n".join(["/* Messages within others, by the addresses that rows have of them. */", *lines, "", ""]) if lines else ""
 

@@ -49,16 +49,19 @@ from rosetta_jit.startup.dataclass import replace
 Fields = Mapping[tuple[int, int], Straight]
 
 
-def in_place(kernel: Kernel, fields: Fields) -> Kernel | None:
-    """The decoder that sets these fields in place, those of all elements and the lists themselves; None if it cannot."""
-    lanes = frozenset(each.lane for each in fields.values() if each.lane)
+def in_place(kernel: Kernel, fields: Fields, subject: int = 0) -> Kernel | None:
+    """The decoder that sets these fields in place, those of all elements and the lists themselves; None if it cannot.
+
+    Its bodies are for the message, or for a row of another lane, their ``subject``: then they may set no other field of that.
+    """
+    lanes = frozenset(each.lane for each in fields.values() if each.lane) | ({subject} - {0})
     routines = (stmt for routine in kernel.routines for stmt, _ in statements(routine.body))
     if any(lanes & (_used(stmt) | _set(stmt)) for stmt in routines):
         return None
-    of_message = {offset for lane, offset in fields if lane == 0}
-    if not all(of_message <= {offset for offset, _ in settled(body)} for body in kernel.bodies):
+    own = {offset for lane, offset in fields if lane == subject}
+    if not all(own <= {offset for offset, _ in settled(body, subject)} for body in kernel.bodies):
         return None
-    bodies = [_Body(fields, lanes, body) for body in kernel.bodies]
+    bodies = [_Body(fields, lanes, subject, body) for body in kernel.bodies]
     found = tuple(each.block(body, {}) for each, body in zip(bodies, kernel.bodies, strict=True))
     return with_bodies(kernel, found) if all(each.is_in_place for each in bodies) else None
 
@@ -147,8 +150,8 @@ def _set(stmt: Stmt) -> set[int]:
 class _Body:
     """One body of a decoder being rewritten: the fields that it has set so far, and whether all is as it must be."""
 
-    def __init__(self, fields: Fields, lanes: frozenset[int], body: Block) -> None:
-        self._fields, self._lanes = fields, lanes
+    def __init__(self, fields: Fields, lanes: frozenset[int], subject: int, body: Block) -> None:
+        self._fields, self._lanes, self._subject = fields, lanes, subject
         changing = (stmt for stmt, _ in statements(body) if isinstance(stmt, Assign | For))
         self._changed = frozenset(each.name if isinstance(each, Assign) else each.variable for each in changing)
         self._seen, self._fails = set[tuple[int, int]](), False
@@ -204,7 +207,7 @@ class _Body:
 
     def _placed(self, place: Place, opened: dict[int, Expr]) -> Place:
         """A place of an opened list, by the number of its element."""
-        if place.lane == 0:
+        if place.lane == self._subject:
             return place
         number = difference(place.row, opened[place.lane]) if place.lane in opened else None
         self._fails |= number is None

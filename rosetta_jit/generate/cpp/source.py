@@ -18,7 +18,8 @@ from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
 from rosetta_jit.generate.cpp.between import between
 from rosetta_jit.generate.cpp.header import filled_in
 from rosetta_jit.generate.cpp.lists import row_name, row_struct, taken
-from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
+from rosetta_jit.generate.cpp.lists_in_place import Opened, messages_of, opened_lists
+from rosetta_jit.generate.cpp.messages_in_place import MessagesInPlace
 from rosetta_jit.generate.cpp.messages_within import classes, collecting, collectors
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
@@ -65,11 +66,12 @@ SAID = """    if (where.scratch >= 0) { /* the mapping has put this text togethe
 """
 
 
-def source(unit: Unit, parts: Parts, manners: Manners, decoder: Kernel | None) -> str:
-    """The text of the source file. ``decoder`` is the kernel that sets fields where the object has them."""
+def source(unit: Unit, parts: Parts, manners: Manners, decoder: Kernel | None, inner: MessagesInPlace | None) -> str:
+    """The text of the source file. ``decoder`` is the kernel that sets fields where the object, and ``inner`` messages, have them."""
     printed, lanes = parts.printed, parts.lanes
-    walks = {"decode": Walk(unit, lanes, manners, "decode"), "encode": reader(unit, lanes, manners)}
-    opened = opened_lists(walks["decode"], "target") if "borrow" in printed else []
+    visited = frozenset[int]() if inner is None else inner.lanes
+    walks = {"decode": Walk(unit, lanes, manners, "decode", visited=visited), "encode": reader(unit, lanes, manners)}
+    emptied, opened = _opened(unit, walks["decode"], inner) if "borrow" in printed else ([], [])
     given = frozenset(each.lane for each in arrays_in_place(walks["decode"], "target"))
     walks["decode"].opened = given.union(*(each.lanes for each in opened))
     walks["encode"].opened = frozenset(lane for each in opened for lane in each.containers)
@@ -92,7 +94,7 @@ def source(unit: Unit, parts: Parts, manners: Manners, decoder: Kernel | None) -
         includes=_includes(called),
         structs="\n\n".join(_struct(unit, parts, each, walks["decode"].taken) for each in parts.structs),
         asserts="\n".join(f'static_assert(sizeof({each.identifier}) == {each.size}, "no padding is added");' for each in parts.structs),
-        holder=classes(walks["encode"])
+        holder=classes(walks["encode"], visited | walks["encode"].visited)
         + _row_structs(walks["encode"], [*views, *filled])
         + ("" if decoder is None else packed_structs(walks["decode"], decoder, opened))
         + _holder(unit, parts, given, containers, listed, kinds, kinds.keys() & copied(parts, directs["encode"], walks["encode"]))
@@ -103,8 +105,16 @@ def source(unit: Unit, parts: Parts, manners: Manners, decoder: Kernel | None) -
         lanes=_lane_names(unit, parts),
         said=SAID if said else "",
         written=", written_(new memory)" if writes_apart(unit) else "",
-        functions="\n".join(_methods(unit, parts, directs, given, opened, walks["encode"])),
+        functions="\n".join(_methods(unit, parts, directs, given, emptied, walks["encode"])),
     )
+
+
+def _opened(unit: Unit, walk: Walk, inner: MessagesInPlace | None) -> tuple[list[str], list[Opened]]:
+    """The lists of the object that become empty where a message is refused, and those that a decoder opens, also in ``inner`` messages."""
+    opened = opened_lists(walk, "target")
+    emptied = [each.at for each in opened if each.containers]
+    emptied += [spot.at for _, _, spot in messages_of(walk, 0, unit.type, "target")]
+    return emptied, [*opened, *(() if inner is None else inner.rows)]
 
 
 def _kernels(unit: Unit, parts: Parts) -> str:
@@ -207,7 +217,8 @@ def _walks(unit: Unit, parts: Parts, walks: dict[str, Walk], directs: dict[str, 
         if not roles:
             continue
         walk.direct = frozenset(each.lane for each in directs[name]) - walk.taken
-        inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive]
+        in_place = walk.visited if name == "decode" else ()
+        inner = [_walk(unit, parts, walk, lane, Ref(struct)) for lane, struct in unit.layout.recursive if lane not in in_place]
         walk.straight = frozenset(row for row, _ in straight_numbers(walk).values())
         whole = [_walk(unit, parts, walk, 0, Ref(unit.type), role) for role in roles]
         texts += [*(f"{head};" for head, _ in inner), "", *(f"{head}\n{{\n{body}}}\n" for head, body in (*whole, *inner))]
@@ -249,7 +260,7 @@ def _walk(unit: Unit, parts: Parts, walk: Walk, lane: int, type_: Ref, role: Rol
 
 
 def _methods(
-    unit: Unit, parts: Parts, directs: dict[str, list[Direct]], given: frozenset[int], opened: list[Opened], walk: Walk
+    unit: Unit, parts: Parts, directs: dict[str, list[Direct]], given: frozenset[int], emptied: list[str], walk: Walk
 ) -> list[str]:
     template = (FOLDER / "methods.cpp").read_text("utf-8")
     _, *sections = re.split(r"^/\* == (\w+) == \*/\n", template, flags=re.MULTILINE)
@@ -262,7 +273,7 @@ def _methods(
         first, *others = printed["borrow"].attempts
         bound = {each.lane for each in directs["decode"]} | given
         finish = [f"    {FILLED}->{lanes.rows(each.lane)}.finish({each.row}, bytes);" for each in directs["decode"]]
-        empty = [*finish, *(f"    rosetta_jit::detail::resize_to({each.at}, 0);" for each in opened if each.containers)]
+        empty = [*finish, *(f"    rosetta_jit::detail::resize_to({each}, 0);" for each in emptied)]
         reset = _emptied(parts, walk, bound)
         asks = printed["borrow"].text + reset.replace(FILLED, "holder")
         texts.append(

@@ -99,7 +99,8 @@ class Descent:
         where = Where(f"{where.path}[]")
         known = Binary("and", Compare("ge", self.stack.row, index(0)), Compare("lt", self.stack.row, Used(lane)))
         self.writer.expect(known, "length", where, "the holder is damaged")
-        return HolderFields(self.writer, self.root.layout, Cell(lane, self.stack.row, self.root.layout.lanes[lane].element), where)
+        cell = Cell(lane, self.stack.row, self.root.layout.lanes[lane].element)
+        return HolderFields(self.writer, self.root.layout, cell, where, self.root.borrow)
 
     # --- within a row --------------------------------------------------------------------------------------------------
 

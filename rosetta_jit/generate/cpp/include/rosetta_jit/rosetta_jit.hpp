@@ -893,7 +893,15 @@ ROSETTA_JIT_INLINE std::int64_t write_varints(unsigned char *bytes, std::int64_t
     return at;
 }
 
-/* Eight bytes as bools: 1 for all but 0. And sixteen. */
+/* Four bytes as bools: 1 for all but 0. And eight, and sixteen. */
+inline void copy_four_flags(unsigned char *target, const unsigned char *rows) noexcept
+{
+    std::uint32_t four;
+    std::memcpy(&four, rows, sizeof four);
+    const std::uint32_t set = (((four & 0x7f7f7f7fu) + 0x7f7f7f7fu) | four) >> 7 & 0x01010101u;
+    std::memcpy(target, &set, sizeof set);
+}
+
 inline void copy_eight_flags(unsigned char *target, const unsigned char *rows) noexcept
 {
     const std::uint64_t eight = word_at(rows);
@@ -916,13 +924,11 @@ inline void copy_sixteen_flags(unsigned char *target, const unsigned char *rows)
 #endif
 }
 
-/* Bytes as bools. Of many the last ones may be set twice. */
-inline void copy_flags(void *target, const void *rows, std::int64_t count) noexcept
+/* Four bytes or more as bools, of which the last ones may be set twice. */
+inline void copy_more_flags(unsigned char *to, const unsigned char *from, std::int64_t count) noexcept
 {
-    unsigned char *const to = static_cast<unsigned char *>(target);
-    const unsigned char *const from = static_cast<const unsigned char *>(rows);
-    std::int64_t done = 0;
     if (count >= 16) {
+        std::int64_t done = 0;
         for (; count - done > 32; done += 32) {
             copy_sixteen_flags(to + done, from + done);
             copy_sixteen_flags(to + done + 16, from + done + 16);
@@ -938,7 +944,20 @@ inline void copy_flags(void *target, const void *rows, std::int64_t count) noexc
         copy_eight_flags(to + count - 8, from + count - 8);
         return;
     }
-    for (; done < count; done++) {
+    copy_four_flags(to, from);
+    copy_four_flags(to + count - 4, from + count - 4);
+}
+
+/* Bytes as bools. A call takes longer than to set a few. */
+ROSETTA_JIT_INLINE void copy_flags(void *target, const void *rows, std::int64_t count) noexcept
+{
+    unsigned char *const to = static_cast<unsigned char *>(target);
+    const unsigned char *const from = static_cast<const unsigned char *>(rows);
+    if (count >= 4) {
+        copy_more_flags(to, from, count);
+        return;
+    }
+    for (std::int64_t done = 0; done < count; done++) {
         to[done] = from[done] != 0 ? 1 : 0;
     }
 }
@@ -1652,6 +1671,40 @@ template <class Container> struct objects {
         }
     }
 };
+
+/* Messages of a list are made before they are read. Where a count that a message only says would take too much memory, some are made at first, and then more:
+   of lists that are left open within each other each takes no more than half of what the one around it may, and the outermost one a message for each byte. */
+constexpr std::int64_t MESSAGES_AT_FIRST = 1024;
+
+template <class Container>
+ROSETTA_JIT_APART void make_messages(Container &target, std::int64_t count, std::int64_t size, std::int64_t depth)
+{
+    const std::int64_t most = std::max(size >> std::min(depth, std::int64_t{62}), MESSAGES_AT_FIRST);
+    resize_to(target, std::min(count, std::max(count_of(target), most)));
+}
+
+/* Makes the first of so many, for which so many bytes are left, and that lie so deep. */
+template <class Container>
+ROSETTA_JIT_INLINE void begin_messages(Container &target, std::int64_t count, std::int64_t size, std::int64_t depth)
+{
+    if (count_of(target) != count) {
+        make_messages(target, count, size, depth);
+    }
+}
+
+template <class Container> ROSETTA_JIT_COLD void more_messages(Container &target, std::int64_t count)
+{
+    resize_to(target, std::min(count, 4 * count_of(target)));
+}
+
+/* One of so many, before which all others have been read. */
+template <class Container> ROSETTA_JIT_INLINE auto &message_of(Container &target, std::int64_t index, std::int64_t count)
+{
+    if (ROSETTA_JIT_UNLIKELY(std::begin(target) + static_cast<std::ptrdiff_t>(index) == std::end(target))) {
+        more_messages(target, count);
+    }
+    return std::begin(target)[static_cast<std::ptrdiff_t>(index)];
+}
 
 /* The one that `point_object` has pointed to. */
 template <class Object> struct object {
