@@ -64,7 +64,7 @@ def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
     """The messages of an array, one behind the other. Of a tree most have none. What they contain may move the rows at hand."""
     scope, lanes = function.scope, function.scope.lanes
     at, count = (bare(expression(scope, each)) for each in call.arguments)
-    start, number = bare(expression(scope, visit.start)), scope.locals.identifier("i")
+    start, number = bare(expression(scope, visit.start)), scope.locals.identifier("object number")
     behind = scope.locals.identifier(call.results[0].name)
     function.line(f"int64_t {behind} = {at};")
     with function.block(f"if (ROSETTA_JIT_UNLIKELY({count} > 0))"):
