@@ -57,16 +57,18 @@ def programs_of(
     directions: Sequence[Direction] = DIRECTIONS,
     encoding: str | None = None,
     parameters: Mapping[str, object] | None = None,
+    imports: Sequence[str] = (),
 ) -> tuple[Request, ...]:
     """The programs of some mappings, types, and folders of mappings, each once.
 
-    A name that ends in ``.mapping``, or is a file's, is that of a mapping; any other one that is no folder's is that of a type.
+    A name that ends in ``.mapping``, or is a file's, is that of a mapping; any other one that is no folder's is that of a type, which
+    ``imports`` may declare.
     """
     values = plain_parameters(parameters or {})
     found = [
         Request(direction, mapping=name, encoding=encoding, parameters=values)
         if _is_mapping(name)
-        else Request(direction, type=name, encoding=encoding)
+        else Request(direction, type=name, encoding=encoding, imports=tuple(imports))
         for each in names
         for name in members(each)
         for direction in directions

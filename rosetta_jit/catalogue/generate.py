@@ -100,5 +100,9 @@ def one_way_around(holder: str, lacking: str) -> Diagnostic:
     return error("not-generated", text, help_="choose `--directions decode,encode`, or another `--holder`, as own")
 
 
+def needless_import() -> Diagnostic:
+    return error("needless-option", "`--import` says nothing about a mapping", help_="leave it out: a mapping imports files itself")
+
+
 def needless(option: str, emit: str) -> Diagnostic:
     return error("needless-option", f"`{option}` says nothing about `--emit {emit}`", help_="leave it out, or choose the other `--emit`")

@@ -54,6 +54,11 @@ def add_encoding(command: ArgumentParser) -> None:
     command.add_argument("--encoding", help="one of those that `rosetta-jit frameworks` lists (default: the mapping's own)")
 
 
+def add_imports(command: ArgumentParser) -> None:
+    """The files that declare a type, where its name does not say which."""
+    command.add_argument("--import", dest="imports", metavar="FILE", action="append", default=[], help="a file that declares the type")
+
+
 def add_wire(command: ArgumentParser) -> None:
     """Which wire, of a mapping that has several."""
     command.add_argument("--wire", metavar="NAME", help="one of several wires of the mapping")

@@ -9,7 +9,17 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_parameters, add_wire, encoding_of, parameters_of, wire_of
+from rosetta_jit.cli.arguments import (
+    Commands,
+    add_command,
+    add_encoding,
+    add_imports,
+    add_parameters,
+    add_wire,
+    encoding_of,
+    parameters_of,
+    wire_of,
+)
 from rosetta_jit.file_errors import folder, named, whole
 from rosetta_jit.pipeline.request import Request
 
@@ -52,6 +62,7 @@ def add(commands: Commands) -> None:
     command.add_argument("--cpu", default="", help="of an object: one of the machine's, as cortex-m7 (default: any)")
     command.add_argument("--freestanding", action="store_true", help="use nothing of a C library but memcpy and memset")
     command.add_argument("--framework", help="the type's, where its name does not tell")
+    add_imports(command)
     add_encoding(command)
     add_wire(command)
     add_parameters(command)
@@ -83,9 +94,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check(arguments: argparse.Namespace) -> None:
     """Refuse options that what is made knows nothing of, rather than to leave them out in silence."""
-    from rosetta_jit.catalogue.generate import needless
+    from rosetta_jit.catalogue.generate import needless, needless_import
     from rosetta_jit.errors import SchemaError
 
+    if arguments.imports and _is_mapping(cast("str", arguments.subject)):
+        raise SchemaError((needless_import(),))
     of_source = {"--holder": arguments.holder, "--include": arguments.include, "--arrays": arguments.arrays == "numpy"}
     meaningless = of_source if arguments.emit == "object" else {"--target": arguments.target, "--cpu": arguments.cpu}
     if wrong := tuple(needless(option, arguments.emit) for option, value in meaningless.items() if value):
@@ -123,7 +136,7 @@ def _request(arguments: argparse.Namespace) -> Request:
     subject = cast("str", arguments.subject)
     if _is_mapping(subject):
         return request_of("decode", options, mapping=subject)
-    return type_request("decode", subject, options)
+    return type_request("decode", subject, options | {"imports": cast("list[str]", arguments.imports)})
 
 
 def _is_mapping(subject: str) -> bool:

@@ -8,7 +8,7 @@ from keyword import iskeyword
 from pathlib import Path
 from typing import Any
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_parameters, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_imports, add_parameters, parameters_of
 from rosetta_jit.startup.dataclass import replace
 
 
@@ -21,7 +21,7 @@ def add(commands: Commands) -> None:
     command.add_argument("-o", "--output", metavar="FILE", type=Path, help="the file to write (default: stdout)")
     command.add_argument("--encoding", help="how messages are encoded, where a type is one of several frameworks")
     command.add_argument("--framework", help="whose type it is, where nothing else tells")
-    command.add_argument("--import", dest="imports", metavar="FILE", action="append", default=[], help="a file that declares the type")
+    add_imports(command)
     add_parameters(command)
 
 

@@ -46,14 +46,14 @@ class AheadOfTime(Build):
         return layout(Ref(name), schema, padded=True)
 
     def _optimised(self, kernel: Kernel) -> Kernel:
-        return postpone(alone(passes.run(kernel, passes.ANY_MACHINE)))
+        return postpone(alone(passes.run(kernel, passes.ANY_MACHINE, large=self._large)))
 
 
 class LowByteFirst(AheadOfTime):
     """The same for machines whose numbers lie as most encodings have them: arrays of them are copied as they are."""
 
     def _optimised(self, kernel: Kernel) -> Kernel:
-        return postpone(alone(passes.run(kernel, passes.FIELD_BY_FIELD)))
+        return postpone(alone(passes.run(kernel, passes.FIELD_BY_FIELD, large=self._large)))
 
 
 class IntoObjects(LowByteFirst):

@@ -147,7 +147,12 @@ class Build:
     def _optimised(self, kernel: Kernel) -> Kernel:
         """The kernel after the passes; VerificationError if it cannot be proven safe."""
         with kept_by(proven):
-            return passes.run(kernel, large=LARGE if self.types.rules is not None else LARGE_WITHOUT_RULES)
+            return passes.run(kernel, large=self._large)
+
+    @property
+    def _large(self) -> int:
+        """Statements from which on passes run but once."""
+        return LARGE if self.types.rules is not None else LARGE_WITHOUT_RULES
 
     def _lowered(self, direction: Literal["decode", "encode", "size"]) -> Kernel:
         types, request = self.types, self.request

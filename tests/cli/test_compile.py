@@ -43,6 +43,17 @@ def test_later_processes_find_them(tmp_path, monkeypatch, capsys):
     assert whole.startswith("1 ready, 0 wrong, in ")
 
 
+def test_files_declare_types(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path / "cache"))
+    schema = tmp_path / "lab.proto"
+    schema.write_text('syntax = "proto3"; package lab; message Arm { uint32 joints = 1; }')
+    assert main(["cache", "warm", "lab.Arm", "--import", str(schema)]) == 0
+    assert "2 ready, 0 wrong" in capsys.readouterr().out
+    kept = {path.name for path in tmp_path.rglob("*") if path.is_file()}
+    Decoder.of("lab.Arm", imports=[str(schema)]), Encoder.of("lab.Arm", imports=[str(schema)])
+    assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == kept
+
+
 def test_many_are_compiled_in_several_processes(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("ROSETTA_JIT_CACHE_DIR", str(tmp_path))
     types = [f"std_msgs/msg/{name}" for name in ("Bool", "Byte", "Char", "Empty", "Float32", "Float64", "Int8", "Nothing")]

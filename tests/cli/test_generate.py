@@ -68,3 +68,19 @@ def test_links_are_replaced_not_followed(tmp_path, capsys):
     assert (tmp_path / "header.h").read_text().startswith("/*")
     assert sorted(each.name for each in tmp_path.iterdir()) == ["elsewhere", "header.c", "header.h"]
     assert capsys.readouterr().out.count("wrote") == 4
+
+
+def test_files_declare_a_type(tmp_path, capsys):
+    (tmp_path / "lab.proto").write_text('syntax = "proto3"; package lab; message Arm { uint32 joints = 1; }')
+    command = ["generate", "lab.Arm", "--language", "python", "-o", str(tmp_path)]
+    assert main(command) == 1
+    assert "error[unknown-type]" in capsys.readouterr().err
+    assert main([*command, "--import", str(tmp_path / "lab.proto")]) == 0
+    assert "class Arm:" in (tmp_path / "arm.py").read_text()
+
+
+def test_mappings_import_by_themselves(tmp_path, capsys):
+    command = ["generate", "yarp/icub/torso_state.mapping", "--encoding", "yarp3", "--import", "lab.proto", "-o", str(tmp_path)]
+    assert main(command) == 1
+    assert "error[needless-option]: `--import` says nothing about a mapping" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -29,8 +29,11 @@ install(EXPORT node DESTINATION lib)
 add_executable(node main.cpp)
 target_link_libraries(node messages)
 rosetta_generate(node sensor_msgs/JointState ENCODING ros1 NAME joints)
+rosetta_generate(node lab.Arm NAME lab_arm IMPORTS lab.proto)
 """
+SCHEMA = 'syntax = "proto3"; package lab; message Arm { uint32 joints = 1; }'
 MAIN = """
+#include "lab_arm.hpp"
 #include "joints.hpp"
 #include "nav_sat_fix_utm.h"
 #include "torso_state.hpp"
@@ -39,6 +42,9 @@ extern "C" int own(void);
 int main()
 {
     joints::JointState empty;
+    lab_arm::Arm six;
+    six.joints = 6;
+    std::printf("%zu ", lab_arm::codec().encode(six).size());
     std::printf("%d %zu %s\\n", own(), joints::codec().encode(empty).size(), nav_sat_fix_utm_status_text(NAV_SAT_FIX_UTM_OK));
     return torso_state::codec().try_size(torso_state::JointAngles()).has_value();
 }
@@ -51,10 +57,10 @@ OWN = "int own(void) { typeof(1) extension_of_gnu = 7; return extension_of_gnu; 
 )
 def test_a_project_of_others(tmp_path):
     """Libraries are linked without keywords, C has extensions, the target is exported, and two languages are generated for it."""
-    for name, text in (("CMakeLists.txt", PROJECT), ("main.cpp", MAIN), ("own.c", OWN)):
+    for name, text in (("CMakeLists.txt", PROJECT), ("main.cpp", MAIN), ("own.c", OWN), ("lab.proto", SCHEMA)):
         (tmp_path / name).write_text(text)
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     for command in (["cmake", "-S", ".", "-B", "made", f"-Drosetta_jit_DIR={CMAKE}"], ["cmake", "--build", "made"]):
         done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
-    assert subprocess.run([tmp_path / "made/node"], capture_output=True, text=True, check=False).stdout == "7 32 ok\n"
+    assert subprocess.run([tmp_path / "made/node"], capture_output=True, text=True, check=False).stdout == "2 7 32 ok\n"

@@ -16,12 +16,15 @@ TYPES = {
     "empty": ("std_msgs/Empty", ROS1),
     "twist": ("geometry_msgs/Twist", ROS1),
     "diagnostics": ("diagnostic_msgs/DiagnosticArray", ROS2),
+    "signals": ("t/Signals", ROS1 | {"schema": {"t/Signals.msg": "std_msgs/Empty[] signals\nstd_msgs/Empty[2] pair\n"}}),
+    "tree": ("t.tree_t", {"schema": {"t.lcm": "package t; struct tree_t { int32_t n; string names[n]; tree_t branches[n]; }"}}),
 }
-"""One whose size and encoder cannot fail, one whose size is known, and one of which nobody asks how many rows are in use."""
+"""One whose size and encoder cannot fail, one whose size is known, one of which nobody asks how many rows are in use, lists whose elements
+have nothing, and messages within others behind a loop."""
 BOTH = ("decode", "encode")
-CHECKED = ("-Og", "-fsyntax-only")
+CHECKED = ("-Og", "-fsyntax-only", "-Wshadow")
 WAYS = [
-    ("g++", BOTH, ("-Og",)),
+    ("g++", BOTH, ("-Og", "-Wshadow")),
     ("g++", BOTH, SANITIZED),
     ("g++", BOTH, ("-O2", "-std=c++20", "-fno-exceptions")),
     ("clang++", BOTH, CHECKED),

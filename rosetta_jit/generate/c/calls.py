@@ -83,7 +83,7 @@ def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
     """
     scope, lanes = function.scope, function.scope.lanes
     at, count = (bare(expression(scope, each)) for each in call.arguments)
-    number, behind = scope.locals.identifier("i"), scope.locals.identifier(call.results[0].name)
+    number, behind = scope.locals.identifier("object number"), scope.locals.identifier(call.results[0].name)
     list_ = "" if visit.place is None else lanes.messages[visit.place.lane, visit.place.offset]
     function.line(f"int64_t {behind} = {at};")
     if list_:

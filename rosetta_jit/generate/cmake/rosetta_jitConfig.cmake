@@ -1,11 +1,12 @@
 # find_package(rosetta_jit): the headers that generated C++ shares, and a function that generates sources.
 #
 #   rosetta_generate(TARGET SUBJECT [LANGUAGE c|cpp] [HOLDER own|protobuf|ros1|ros2|lcm|yarp|rsb] [ENCODING NAME] [NAME NAME]
-#                    [FRAMEWORK NAME] [INCLUDE HEADER] [DIRECTIONS decode|encode...] [PARAMETERS NAME=VALUE...] [DEPENDS FILE...])
+#                    [FRAMEWORK NAME] [INCLUDE HEADER] [DIRECTIONS decode|encode...] [PARAMETERS NAME=VALUE...] [IMPORTS FILE...]
+#                    [DEPENDS FILE...])
 #
 # writes SUBJECT, a mapping (*.mapping) or a type, as source, and adds it to TARGET. Whoever links TARGET finds its header, `NAME.hpp` or
-# `NAME.h`. NAME is by default the name of the mapping's file; a type needs one. When the mapping changes, or a file in DEPENDS, the source is
-# written anew.
+# `NAME.h`. NAME is by default the name of the mapping's file; a type needs one, and IMPORTS, the files that declare it, where its name does
+# not tell. When the mapping changes, or a file in IMPORTS or DEPENDS, the source is written anew.
 
 cmake_minimum_required(VERSION 3.13)
 
@@ -23,7 +24,7 @@ if(NOT TARGET rosetta_jit::headers)
 endif()
 
 function(rosetta_generate target subject)
-  cmake_parse_arguments(PARSE_ARGV 2 ARG "" "LANGUAGE;HOLDER;ENCODING;NAME;FRAMEWORK;INCLUDE" "DIRECTIONS;PARAMETERS;DEPENDS")
+  cmake_parse_arguments(PARSE_ARGV 2 ARG "" "LANGUAGE;HOLDER;ENCODING;NAME;FRAMEWORK;INCLUDE" "DIRECTIONS;PARAMETERS;IMPORTS;DEPENDS")
   if(ARG_UNPARSED_ARGUMENTS OR ARG_KEYWORDS_MISSING_VALUES)
     message(FATAL_ERROR "rosetta_generate: cannot use ${ARG_UNPARSED_ARGUMENTS}${ARG_KEYWORDS_MISSING_VALUES}")
   endif()
@@ -60,6 +61,15 @@ function(rosetta_generate target subject)
   endforeach()
   foreach(parameter IN LISTS ARG_PARAMETERS)
     list(APPEND options --parameter ${parameter})
+  endforeach()
+
+  foreach(import IN LISTS ARG_IMPORTS)
+    get_filename_component(file "${import}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
+    if(EXISTS "${file}") # else it is one that the library brings, or on the search path
+      set(import "${file}")
+      list(APPEND depends "${file}")
+    endif()
+    list(APPEND options --import "${import}")
   endforeach()
 
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/rosetta_jit/${target}")

@@ -155,8 +155,10 @@ def row_struct(walk: Walk, listed: Listed, container: str = "") -> str:
         lines.append("            return " + " &&\n                   ".join(lies) + ";")
         lines.append("        }")
     lines += ["        return false;", "    }", ""]
-    lines += [f"    template <class Element> ROSETTA_JIT_INLINE static {type_} of(const Element &element)", "    {"]
-    lines += [f"        {type_} row = {{}};", *walk.writer.text().splitlines(), "        return row;", "    }"]
+    filled = walk.writer.text().splitlines()
+    element = "const Element &element" if filled else "const Element &"
+    lines += [f"    template <class Element> ROSETTA_JIT_INLINE static {type_} of({element})", "    {"]
+    lines += [f"        {type_} row = {{}};", *filled, "        return row;", "    }"]
     if container:
         lines += ["", f"    using list = rosetta_jit::detail::view<{type_}, {container}, {row_name(lanes, lane)}>;"]
     lines += ["};", ""]

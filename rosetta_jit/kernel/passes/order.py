@@ -72,7 +72,8 @@ def run(kernel: Kernel, passes: tuple[Pass, ...] = PASSES, *, large: int = LARGE
     Parameters
     ----------
     large
-        Statements from which on each pass runs but once.
+        Statements of a body, on average, from which on each pass runs but once. Whoever makes a program of a type in another way gives the
+        same number: the passes decide which check comes first, and so what is said of a message with two faults.
 
     Raises
     ------
@@ -93,7 +94,7 @@ def _all(kernel: Kernel, passes: tuple[Pass, ...], large: int) -> Kernel:
     check_shape(kernel)
     results: dict[Pass, Kernel] = {}
     proven: Kernel | None = None
-    for transform in _needed(_once(passes) if is_large(kernel, large) else passes, kernel):
+    for transform in _needed(_once(passes) if is_large(kernel, large * len(kernel.bodies)) else passes, kernel):
         made = results.get(transform)
         if made is not None and _is_same(made, kernel):
             continue
