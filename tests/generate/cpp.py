@@ -68,21 +68,31 @@ def program(
     options: tuple[str, ...] = CAREFUL,
     main: Path = MAIN,
     units: Iterable[str] = (),
-    is_whole: bool = False,
+    classes: str = "",
+    is_apart: bool = False,
 ) -> Path:
     """The program around a unit, or around several that are written as one, which must not give a compiler cause to complain.
 
-    A ``main`` that ``is_whole`` includes the unit's source.
+    All is one source, of which a compiler reads the headers once: the unit's, those of ``classes`` (a file of them, if there is one), and
+    ``main``. A unit that ``is_apart`` stays a source of its own, as people compile it.
     """
     made = folder / f"{name}.{compiler}"
     words = [f'-DHEADER="{name}.hpp"', f"-DUNITS={''.join(f'EACH({each})' for each in units or (name,))}"]
-    begun = read_once(folder, name, options) if compiler == "g++" and begins_with_unit(main) else ()
-    files = [main, *([] if is_whole else [folder / f"{name}.cpp"]), *sources]
-    command = [compiler, *STRICT, *options, *begun, f"-I{folder}", *words, *files, "-lm", "-o", made]
+    begun = read_once(folder, name, options) if compiler == "g++" and (not is_apart or begins_with_unit(main)) else ()
+    files = [main, folder / f"{name}.cpp"] if is_apart else [one_source(folder, name, classes, main)]
+    command = [compiler, *STRICT, *options, *begun, f"-I{folder}", *words, *files, *sources, "-lm", "-o", made]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
     assert done.returncode == 0, done.stderr
     assert not done.stderr
     return made
+
+
+def one_source(folder: Path, name: str, classes: str, main: Path) -> Path:
+    """A unit's source with classes and a program behind it."""
+    whole = folder / f"{name}.whole.cpp"
+    between = f"#include <{classes}>\n" if classes else ""
+    whole.write_text(f'{(folder / f"{name}.cpp").read_text()}\n{between}#include "{main}"\n')
+    return whole
 
 
 def begins_with_unit(main: Path) -> bool:

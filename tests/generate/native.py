@@ -73,11 +73,9 @@ def protoc(folder: Path, name: str, text: str) -> None:
 
 
 def program_of_protoc(folder: Path, unit: str, classes: str, options: tuple[str, ...], units: Iterable[str] = ()) -> Path:
-    """The program around a unit that fills protoc's classes, as one source: a compiler reads the headers of protobuf once."""
-    main = folder / "whole.cpp"
-    main.write_text(f'#include "{unit}.cpp"\n#include <{classes}.pb.cc>\n#include "{cpp.MAIN}"\n')
-    options = (*options, f"-isystem{folder}", "-Wno-subobject-linkage")
-    return cpp.program(folder, unit, "-lprotobuf", options=options, main=main, units=units, is_whole=True)
+    """The program around a unit that fills protoc's classes."""
+    options = (*options, f"-isystem{folder}")
+    return cpp.program(folder, unit, "-lprotobuf", options=options, units=units, classes=f"{classes}.pb.cc")
 
 
 OF = {"ros1": of_roscpp, "lcm": of_lcm, "protobuf": of_protoc}

@@ -54,7 +54,7 @@ def test_cpp_answers_as_the_library_does(tmp_path):
     request, good = SUBJECTS["joints"]
     name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "joints"))
     messages = harmed(good, 12, name)
-    found = answers(cpp.program(tmp_path, name, options=QUICK), messages)
+    found = answers(cpp.program(tmp_path, name, options=QUICK, is_apart=True), messages)
     assert {line.split()[0] for line in found} >= {"ok", "truncated"}
     same(found, rj.Decoder.of(request.type, encoding="ros1"), rj.Encoder.of(request.type, encoding="ros1"), messages)
 
@@ -253,7 +253,7 @@ def test_programs_may_disable_exceptions(compiler, tmp_path):
     name = cpp.write(tmp_path, generated(TORSO, "cpp", BOTH, "torso"))
     (tmp_path / "main.cpp").write_text(WITHOUT_EXCEPTIONS)
     options = ("-fno-exceptions", "-fno-rtti")
-    made = cpp.program(tmp_path, name, compiler=compiler, options=options, main=tmp_path / "main.cpp")
+    made = cpp.program(tmp_path, name, compiler=compiler, options=options, main=tmp_path / "main.cpp", is_apart=True)
     assert subprocess.run([made], check=False).returncode == 0
 
 
@@ -303,9 +303,8 @@ def test_positions_that_a_loop_proves_are_not_checked_again(language):
 def test_a_class_that_reads_and_writes_itself_on_a_port(tmp_path):
     """With a model of YARP's classes, which have these signatures."""
     name = cpp.write(tmp_path, generated(TORSO, "cpp", BOTH, "torso_state", Wishes(holder="yarp")))
-    said = subprocess.run(
-        [cpp.program(tmp_path, name, options=("-O0", MODELS), main=HERE / "portable.cpp")], capture_output=True, text=True, check=True
-    )
+    made = cpp.program(tmp_path, name, options=("-O0", MODELS), main=HERE / "portable.cpp", is_apart=True)
+    said = subprocess.run([made], capture_output=True, text=True, check=True)
     assert said.stdout.splitlines() == [
         "1 3 1.5708",
         "1 32",
