@@ -5,3 +5,6 @@ FOLDER = "ROSETTA_JIT_TESTS_DIR"
 
 HEADERS = "headers"
 """The folder in it for headers of C++ that a compiler has read."""
+
+LISP = "lisp"
+"""The folder in it for what SBCL has compiled."""

@@ -25,8 +25,9 @@
             ((member (symbol-name symbol) *own* :test #'string=) (export (list (intern (symbol-name symbol) made)) made))
             ((is-defined symbol) (import (list symbol) made))))))
 
-(defun runtime (path)
-  (load-source path)
+(defun runtime (fasl)
+  "What all units share, compiled."
+  (load fasl)
   (setf *runtime* (find-package "RUNTIME")))
 
 (defun unit (folder package)

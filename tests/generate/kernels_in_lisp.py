@@ -14,9 +14,9 @@ import numpy as np
 from rosetta_jit.generate.c.lanes import Lane
 from rosetta_jit.generate.lisp.functions import About, print_kernel
 from rosetta_jit.generate.lisp.lanes import Lanes, lanes_of
-from rosetta_jit.generate.lisp.language import codec, runtime
+from rosetta_jit.generate.lisp.language import codec
 from rosetta_jit.kernel.passes.alone import alone
-from tests.generate.lisp import COMMAND, MAIN
+from tests.generate.lisp import COMMAND, begun
 
 CAPACITY = 40
 NUMBERS = count()
@@ -26,12 +26,10 @@ NUMBERS = count()
 def machine():
     """A process of SBCL that has the runtime, and its folder."""
     folder = Path(tempfile.mkdtemp())
-    command = [*COMMAND, "--eval", f'(load "{MAIN}")', "--eval", "(loop (eval (read)))"]
+    command = [*COMMAND, *(part for form in (*begun(), "(loop (eval (read)))") for part in ("--eval", form))]
     with (folder / "said").open("w") as said:
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True)
     atexit.register(_end, process)
-    (folder / "runtime.lisp").write_text(runtime("runtime"))
-    process.stdin.write(f'(runtime "{folder}/runtime.lisp")\n')
     return process, folder
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import struct
 import subprocess
+from hashlib import sha256
 from itertools import islice
 from pathlib import Path
 
@@ -18,6 +20,7 @@ from rosetta_jit.generate.lisp.words import Names
 from rosetta_jit.model.layout import WIDTH, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Map, Ref, String, Struct, Union
 from tests.generate import driver
+from tests.shared import FOLDER, LISP
 
 BOTH = ("decode", "encode")
 MAIN = Path(__file__).with_name("driver.lisp")
@@ -49,10 +52,27 @@ def run(*forms: str, cwd: Path) -> str:
     return done.stdout
 
 
+def begun() -> list[str]:
+    """Forms for SBCL to evaluate before others: they load the driver and the runtime of all units."""
+    return [f'(load "{MAIN}")', f'(runtime "{compiled_runtime()}")']
+
+
+def compiled_runtime() -> Path:
+    """The runtime, compiled by the first process of a run of tests that comes to it."""
+    text = runtime("runtime")
+    made = Path(os.environ[FOLDER]) / LISP / f"{sha256(text.encode()).hexdigest()}.fasl"
+    if not made.exists():
+        made.parent.mkdir(exist_ok=True)
+        own = made.with_name(f"{os.getpid()}.lisp")
+        own.write_text(text)
+        run(f'(load "{MAIN}")', f'(load-source "{own}")', cwd=made.parent)
+        own.with_suffix(".fasl").replace(made)
+    return made
+
+
 def answers(folder: Path, asked: list[tuple[object, list[bytes]]], *before: str) -> list[list[str]]:
     """What units say of messages: for each request and its messages the lines; ``before`` are forms for SBCL to evaluate first."""
-    (folder / "runtime.lisp").write_text(runtime("runtime"))
-    forms = [*before, f'(load "{MAIN}")', '(runtime "runtime.lisp")']
+    forms = [*before, *begun()]
     for number, (request, messages) in enumerate(asked):
         package = write(folder, generated(request, "lisp", BOTH, f"unit_{number}"))
         (folder / f"{package}.messages").write_bytes(b"".join(struct.pack("<I", len(message)) + message for message in messages))

@@ -144,9 +144,8 @@ def test_types_and_enums_are_called_as_the_unit_calls_its_own(tmp_path):
 @lisp.needs_sbcl
 def test_names_of_the_runtime_are_known(tmp_path):
     """SBCL says what it defines, accessors and constructors of structures and what its macros make among them."""
-    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
     defined = "(do-symbols (symbol :runtime) (when (and (eq (symbol-package symbol) (find-package :runtime)) (is-defined symbol))"
-    printed = lisp.run(f'(load "{lisp.MAIN}")', '(load "runtime.lisp")', f'{defined} (format t "~(~A~)~%" symbol)))', cwd=tmp_path)
+    printed = lisp.run(*lisp.begun(), f'{defined} (format t "~(~A~)~%" symbol)))', cwd=tmp_path)
     found = {name for name in printed.split() if hyphenated(name) == name}
     assert "make-failure" in found
     assert found <= runtime_names()
@@ -156,9 +155,8 @@ def test_names_of_the_runtime_are_known(tmp_path):
 def test_a_unit_may_have_many_lanes(tmp_path):
     """SBCL runs out of stack where it compiles a function of some 300 keywords, as a constructor of them all would be."""
     lanes = lanes_of([Lane(f"field_{number}", f"field_{number}_used", 1, None) for number in range(400)], 400)
-    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
     (tmp_path / "lanes.lisp").write_text(f"(in-package :runtime)\n{codec(lanes)}(print (length (codec.field-399 (make-codec))))\n")
-    forms = [f'(load "{lisp.MAIN}")', '(load "runtime.lisp")', '(load-source "lanes.lisp")']
+    forms = [*lisp.begun(), '(load-source "lanes.lisp")']
     assert lisp.run(*forms, cwd=tmp_path).split() == ["0"]
 
 
@@ -171,10 +169,9 @@ def test_classes_are_the_systems_own():
 def test_holders_are_classes(tmp_path):
     """They have `make-instance`, typed slots and methods; accessors read and set doubles without boxing them."""
     unit = lisp.write(tmp_path, generated(SUBJECTS["joints"][0], "lisp", BOTH, "joints"))
-    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
     wide = type_request("decode", "w.Part", {"encoding": "protobuf", "schema": {"w.proto": WIDE}})
     part = lisp.write(tmp_path, generated(wide, "lisp", BOTH, "part"))
-    forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")', f'(unit "{tmp_path}/" "{unit}")', f'(unit "{tmp_path}/" "{part}")']
+    forms = [*lisp.begun(), f'(unit "{tmp_path}/" "{unit}")', f'(unit "{tmp_path}/" "{part}")']
     forms += [
         "(defgeneric sequence-of (message))",
         "(defmethod sequence-of ((message joints:header)) (joints:header-seq message))",
@@ -224,8 +221,7 @@ def test_numbers_are_read_and_written_without_allocating(tmp_path):
         SUBJECTS["joints"],
         (type_request("decode", "w.Wide", {"encoding": "protobuf", "schema": {"w.proto": WIDE}}), [bytes.fromhex(WIDE_MESSAGE)]),
     ]
-    forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")']
-    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
+    forms = lisp.begun()
     for number, (request, messages) in enumerate(asked):
         unit = lisp.write(tmp_path, generated(request, "lisp", BOTH, f"unit_{number}"))
         longest = max(messages, key=len)
@@ -248,8 +244,7 @@ def test_functions_of_the_mapping_and_what_the_host_tells(tmp_path):
         "  .value = int32(counter() + .value)\n  .now = now()\n",
     }
     telling = request_of("decode", {"schema": schema, "encoding": "yarp3"}, mapping="m.mapping")
-    forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")']
-    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
+    forms = lisp.begun()
     for name, request in (("calling", calling), ("telling", telling)):
         lisp.write(tmp_path, generated(request, "lisp", ("decode",), name))
         forms.append(f'(unit "{tmp_path}/" "{name}")')
@@ -276,8 +271,7 @@ def refused(form: str, shown: str = "(princ-to-string found)") -> str:
 def test_objects_that_cannot_be_written(tmp_path):
     """Slots take no number that their field cannot hold; what is in vectors, and how long these are, is said when they are written."""
     unit = lisp.write(tmp_path, generated(SUBJECTS["joints"][0], "lisp", BOTH, "joints"))
-    (tmp_path / "runtime.lisp").write_text(lisp.runtime("runtime"))
-    forms = [f'(load "{lisp.MAIN}")', '(runtime "runtime.lisp")', f'(unit "{tmp_path}/" "{unit}")']
+    forms = [*lisp.begun(), f'(unit "{tmp_path}/" "{unit}")']
     forms += [
         "(handler-case (joints:make-header :seq -1) (type-error () (print :type-error)))",
         refused("(joints:encode (joints:make-joint-state :name (vector 1)))", "(message-error-kind found)"),
