@@ -122,7 +122,11 @@ def unknown_type(name: str, known: Sequence[str]) -> Diagnostic:
     if name.endswith(SUFFIXES):
         help_ = f'a file is imported, and a type in it is named: imports=["{shorten(name)}"]'
     else:
-        help_ = f"did you mean {' or '.join(f'`{each}`' for each in meant)}?" if meant else "name the files that declare it: imports=[…]"
+        help_ = (
+            f"did you mean {' or '.join(f'`{each}`' for each in meant)}?"
+            if meant
+            else "name the files that declare it: imports=[…], or --import"
+        )
     return error("unknown-type", f"no file declares a message `{name}`", help_=help_)
 
 

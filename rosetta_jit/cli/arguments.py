@@ -34,7 +34,7 @@ def add_mapping(command: ArgumentParser) -> None:
 
 
 def add_mapping_or_type(command: ArgumentParser) -> None:
-    """The same, or a type whose messages are decoded into its own holder."""
+    """The same, or a type, whose messages have a holder of its own."""
     command.add_argument(
         "mapping",
         metavar="MAPPING|TYPE",
@@ -76,6 +76,13 @@ def add_parameters(command: ArgumentParser) -> None:
     )
 
 
+def positive(text: str) -> int:
+    """A number of things: 1 or more."""
+    if not text.isdecimal() or not int(text):
+        raise ArgumentTypeError(f"{text!r} is no whole number from 1 on")
+    return int(text)
+
+
 def _parameter(text: str) -> tuple[str, object]:
     """A name and a value; what is no JSON is a text."""
     name, equals, value = text.partition("=")
@@ -110,8 +117,10 @@ def wire_of(arguments: Namespace) -> str | None:
 
 
 def options_of(arguments: Namespace) -> Options:
-    """What the user said of a program: encoding, parameters and wire."""
-    return {"encoding": encoding_of(arguments), "parameters": parameters_of(arguments), "wire": wire_of(arguments)}
+    """What the user said of a program: encoding, parameters and wire, and the files that declare a type."""
+    options: Options = {"encoding": encoding_of(arguments), "parameters": parameters_of(arguments), "wire": wire_of(arguments)}
+    imports = cast("list[str]", getattr(arguments, "imports", []))
+    return {**options, "imports": imports} if imports else options
 
 
 def encoding_of(arguments: Namespace) -> str | None:

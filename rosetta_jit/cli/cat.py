@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command
+from rosetta_jit.cli.arguments import Commands, add_command, positive
 from rosetta_jit.cli.logs import add_decoding, add_log, add_selection, log_of, one_topic, target_of, topics_of
 from rosetta_jit.terminal import printable
 
@@ -21,7 +21,7 @@ def add(commands: Commands) -> None:
     add_log(command)
     add_selection(command)
     add_decoding(command)
-    command.add_argument("-n", "--count", metavar="N", type=int, help="so many messages and no more")
+    command.add_argument("-n", "--count", metavar="N", type=positive, help="so many messages and no more")
     form = command.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help='one JSON object a message and line: {"time": …, "topic": …, "message": …}')
     form.add_argument("--raw", action="store_true", help="the bytes in hexadecimal digits")

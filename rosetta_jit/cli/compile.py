@@ -8,7 +8,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_imports, add_parameters, encoding_of, parameters_of
+from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_imports, add_parameters, encoding_of, parameters_of, positive
 from rosetta_jit.pipeline.request import Direction
 from rosetta_jit.terminal import printable
 
@@ -35,7 +35,7 @@ def add_programs(command: argparse.ArgumentParser, *, nargs: str, of: str = "") 
     usual = f"{of}leave out what is compiled when a message comes that hardly ever does, such as big-endian CDR"
     command.add_argument("--usual", action="store_true", help=usual)
     jobs = f"{of}compile so many at a time (default: as many as there are processors)"
-    command.add_argument("--jobs", type=int, metavar="N", help=jobs)
+    command.add_argument("--jobs", type=positive, metavar="N", help=jobs)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import argparse
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping_or_type, add_parameters, add_wire, options_of
+from rosetta_jit.cli.arguments import (
+    Commands,
+    add_command,
+    add_encoding,
+    add_imports,
+    add_mapping_or_type,
+    add_parameters,
+    add_wire,
+    options_of,
+)
 from rosetta_jit.cli.inputs import add_topic, channel_of, program_of
 from rosetta_jit.pipeline.stages import STAGES
 
@@ -20,6 +29,7 @@ def add(commands: Commands) -> None:
     command.add_argument("--stage", choices=[stage.name for stage in STAGES], default="kernel", help="default: kernel")
     command.add_argument("--direction", choices=("decode", "encode"), default="decode", help="default: decode")
     add_encoding(command)
+    add_imports(command)
     add_wire(command)
     add_parameters(command)
 

@@ -9,7 +9,17 @@ from pathlib import Path
 from typing import cast
 
 from rosetta_jit.catalogue import values as words
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_mapping, add_parameters, add_wire, options_of
+from rosetta_jit.cli.arguments import (
+    Commands,
+    add_command,
+    add_encoding,
+    add_imports,
+    add_mapping_or_type,
+    add_parameters,
+    add_wire,
+    options_of,
+)
+from rosetta_jit.cli.inputs import program_of
 from rosetta_jit.cli.values import load
 from rosetta_jit.errors import ReportError
 from rosetta_jit.file_errors import named
@@ -19,9 +29,10 @@ from rosetta_jit.recording import Message, is_recording, read_file, write_record
 def add(commands: Commands) -> None:
     """Declare the arguments."""
     command = add_command(commands, "encode", "Encode values to messages.", run)
-    add_mapping(command)
+    add_mapping_or_type(command)
     command.add_argument("files", metavar="FILE.json", nargs="+", help="one JSON object, or one a line, as `decode --json` prints them")
     add_encoding(command)
+    add_imports(command)
     add_wire(command)
     add_parameters(command)
     command.add_argument(
@@ -33,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     """All messages are encoded before anything is written."""
     import rosetta_jit
 
-    encode = rosetta_jit.Encoder(arguments.mapping, **options_of(arguments))
+    encode = program_of(rosetta_jit.Encoder, arguments, **options_of(arguments))
     holder = encode.holder_type
     values = [value for file in cast("list[str]", arguments.files) for value in _values(Path(file))]
     messages = [encode(holder.from_dict(value)) for value in values]

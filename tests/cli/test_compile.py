@@ -95,6 +95,13 @@ def test_it_fails_where_nothing_can_be_kept(tmp_path, monkeypatch, capsys):
     assert "error: the cache cannot keep what was compiled" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("jobs", ["0", "-3", "many", "2.5"])
+def test_jobs_are_one_or_more(jobs, capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main(["cache", "warm", "std_msgs/Bool", "--jobs", jobs])
+    assert f"argument --jobs: '{jobs}' is no whole number from 1 on" in capsys.readouterr().err
+
+
 def test_it_fails_where_the_cache_is_off(monkeypatch):
     monkeypatch.setenv("ROSETTA_JIT_CACHE", "off")
     assert main(["compile", BOOL]) == 1

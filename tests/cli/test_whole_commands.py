@@ -52,6 +52,16 @@ def test_encode_is_the_inverse(command, tmp_path):
     assert (tmp_path / "out.bin").read_bytes() == struct.pack("<ii3d", 276, 3, 0, 0, 0)
 
 
+def test_values_of_a_type_that_a_file_declares(command, tmp_path):
+    (tmp_path / "own.proto").write_text('syntax = "proto3"; package mine; message Spot { double x = 1; string name = 2; }')
+    (tmp_path / "values.json").write_text(json.dumps({"x": 1.5, "name": "a"}))
+    command("encode", "mine.Spot", "values.json", "--import", "own.proto", "-o", "out.bin")
+    assert (tmp_path / "out.bin").read_bytes() == b"\x09" + struct.pack("<d", 1.5) + b"\x12\x01a"
+    assert json.loads(command("decode", "mine.Spot", "out.bin", "--json", "--import", "own.proto").stdout) == {"x": 1.5, "name": "a"}
+    assert "--import" in command("decode", "mine.Spot", "out.bin", expected=1).stderr
+    assert "needless-option" in command("decode", TORSO, "out.bin", "--import", "own.proto", expected=1).stderr
+
+
 def test_encoding_must_be_said_where_it_would_be_a_guess(command, tmp_path):
     (tmp_path / "values.json").write_text(json.dumps({"angles": [0.0, 0.0, 0.0]}))
     ran = command("encode", TORSO, "values.json", "-o", "out.bin", expected=1)
