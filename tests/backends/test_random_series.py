@@ -45,6 +45,15 @@ TAGGED = {
     "Inner": PLAIN["Inner"],
     "repeated Inner": PLAIN["Inner[]"],
 }
+OPTIONAL = {
+    "long": PLAIN["int32"],
+    "octet": lambda random: random.randrange(2**8),
+    "double": PLAIN["float64"],
+    "boolean": lambda random: random.random() < 0.5,
+    "string": PLAIN["string"],
+    "sequence<double>": numbers,
+    "Inner": PLAIN["Inner"],
+}
 
 
 def random_fields(random, kinds):
@@ -65,12 +74,13 @@ def message_text(name, fields):
 
 
 def values_of(random, fields, kinds):
-    return {name: kinds[kind](random) for name, kind in fields}
+    """Values of the fields; some of those that are optional are left out."""
+    return {name: kinds[kind](random) for name, kind in fields if kinds is not OPTIONAL or random.random() < 0.6}
 
 
 def random_type(random):
     """A type, how it is asked for, its fields, and what makes their values."""
-    encoding = random.choice(("ros1", "cdr", "protobuf"))
+    encoding = random.choice(("ros1", "cdr", "cdr2", "protobuf"))
     if encoding == "protobuf":
         parts = {f"Part{number}": random_fields(random, TAGGED) for number in range(random.randrange(4))}
         kinds = TAGGED | {name: partial(values_of, fields=fields, kinds=TAGGED) for name, fields in parts.items()}
@@ -78,6 +88,11 @@ def random_type(random):
         messages = "".join(map(message_text, ("All", *parts), (fields, *parts.values())))
         source = f'syntax = "proto3"; package a;\nmessage Inner {{ string name = 1; int32 value = 2; }}\n{messages}'
         return "a.All", {"encoding": encoding, "schema": {"a.proto": source}}, fields, kinds
+    if encoding == "cdr2":
+        fields = random_fields(random, OPTIONAL)
+        members = "".join(f"  @optional {kind} {name};\n" for name, kind in fields)
+        source = f"module a {{\nstruct Inner {{ string name; long value; }};\nstruct All {{\n{members}}};\n}};\n"
+        return "a::All", {"encoding": encoding, "schema": {"a.idl": source}}, fields, OPTIONAL
     fields = random_fields(random, PLAIN)
     files = {"a/msg/Inner.msg": "string name\nint32 value\n", "a/msg/All.msg": "".join(f"{kind} {name}\n" for name, kind in fields)}
     name, framework = ("a/All", "ros1") if encoding == "ros1" else ("a/msg/All", "ros2")
@@ -139,15 +154,19 @@ def bodies(monkeypatch):
     return seen
 
 
-def test_types(bodies):
+@pytest.mark.parametrize("large", [False, True])
+def test_types(large, bodies, monkeypatch):
+    """In large kernels more is worth a loop."""
+    monkeypatch.setattr(stretches, "is_large", lambda _: large)
     for seed in range(SEEDS):
-        compare(seed)
+        compare(seed + large * SEEDS)
     assert sum(bodies) >= SEEDS
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("block", range(BLOCKS))
-def test_campaign(bodies, block):
-    for seed in range(SEEDS + block * BLOCK, SEEDS + (block + 1) * BLOCK):
+def test_campaign(bodies, block, monkeypatch):
+    monkeypatch.setattr(stretches, "is_large", lambda _: block % 2 > 0)
+    for seed in range(2 * SEEDS + block * BLOCK, 2 * SEEDS + (block + 1) * BLOCK):
         compare(seed)
     assert sum(bodies) > BLOCK

@@ -297,6 +297,18 @@ def test_cases_of_large_kernels_are_found_for_each_word_that_notes_what_is_there
     assert {name: getattr(decoded, name) for name in (f"number{number}" for number in range(count)) if decoded.has(name)} == values
 
 
+@pytest.mark.parametrize(("count", "is_one"), [(100, False), (400, True)])
+def test_branches_of_large_kernels_are_a_series(count, is_one):
+    """LLVM takes more than twice as long for twice as many; few of them are quicker, each printed by itself."""
+    members = "".join(f"  @optional long number{number};\n" for number in range(count))
+    options = {"encoding": "cdr2", "schema": {"a.idl": f"struct All {{\n{members}}};\n"}}
+    (made,) = Build(Request("decode", type="All", files=tuple(options["schema"].items()), encoding="cdr2")).kernels
+    parts = found(made, made.bodies[0]).parts(made.bodies[0])
+    assert [len(each.rows) >= count // 2 - 1 for each in parts if isinstance(each, Series)] == [True] * is_one
+    values = {f"number{number}": number * 37 for number in range(0, count, 3)}
+    assert rj.Decoder.of("All", **options)(rj.Encoder.of("All", **options)(values)).to_dict() == values
+
+
 def repeated(*, last, inside=False):
     """A kernel that reads forty numbers in as many stretches; in the end it uses the name of one of them again, perhaps inside a branch."""
     one = Const("i64", 1)

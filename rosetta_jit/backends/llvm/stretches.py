@@ -26,7 +26,8 @@ WORTH = (Copy, Fill, Reserve, Call, For, While)
 """Statements of which a stretch has one: a round of fields that are only compared and set would cost more than they do."""
 
 MAY_BE_WORTH = (*WORTH, If, Switch)
-"""The same, and the statements that may have one inside."""
+"""The same, and the statements that may have one inside. In large kernels these are worth a loop by themselves: for twice as many branches
+LLVM takes more than twice as long, and calls are no slower, as all that they run stays in the processor's caches."""
 
 SKIPPED = 3
 """Stretches among which the first one of a series is looked for: the first ones may be told more than those behind them."""
@@ -82,7 +83,7 @@ class _Look:
                 continue
             if uses is None:
                 uses = Counter(_used_names(block))
-            made = _best(block, slots, range(at, end), period, uses)
+            made = _best(block, slots, range(at, end), period, uses) if self._is_worth(block[at : at + period]) else None
             if made is None:
                 at = end - period + 1
                 continue
@@ -90,6 +91,9 @@ class _Look:
             parts += [*block[behind:begin], series]
             behind = at
         return (*parts, *block[behind:]) if parts else None
+
+    def _is_worth(self, stretch: Block) -> bool:
+        return any(isinstance(each, MAY_BE_WORTH if self.is_large else WORTH) for each in flat(stretch))
 
     def _outlines(self, block: Block) -> list[Outline | None]:
         """The outlines of a block's statements, but for those of a kind of which there are too few for a series."""
@@ -143,8 +147,6 @@ def _end(numbers: Sequence[int], at: int, period: int) -> int:
 
 def _best(block: Block, slots: Sequence[Sequence[Slot]], where: range, period: int, uses: Counter[str]) -> tuple[Series, int, int] | None:
     """A series among statements that repeat themselves, with its begin and end: of all ways to cut them, one that carries least."""
-    if not any(isinstance(each, WORTH) for each in flat(block[where.start : where.start + period])):
-        return None
     middle = (len(where) // 2 // period) * period
     begins = sorted(range(where.start, where.start + period), key=lambda begin: _carries(slots, middle + begin, period))
     for begin in begins[:2]:
