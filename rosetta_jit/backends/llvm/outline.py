@@ -12,7 +12,7 @@ from operator import attrgetter
 from typing import Any, Literal, NamedTuple
 
 from rosetta_jit.kernel import nodes
-from rosetta_jit.kernel.terms import BEGIN, END, ROW
+from rosetta_jit.kernel.terms import BEGIN, END, ROW, type_of
 from rosetta_jit.kernel.walk import blocks_of, expressions_of, operands
 
 FIXED = frozenset((BEGIN.name, END.name, ROW.name))
@@ -97,8 +97,8 @@ class Outline:
         match stmt:
             case nodes.Store(_, _, order):
                 self._shape.append(order)
-            case nodes.SetField(place, _):
-                self._place(place)
+            case nodes.SetField(place, value):
+                self._place(place, nodes.WIDTH[type_of(value)])
             case nodes.Copy(target, source, _):
                 self._address(target)
                 self._address(source)
@@ -119,10 +119,10 @@ class Outline:
         if isinstance(address, nodes.Place):
             self._place(address)
 
-    def _place(self, place: nodes.Place) -> None:
+    def _place(self, place: nodes.Place, width: int = WIDEST) -> None:
         lane, offset = place.lane, place.offset
         self._lane(lane)
-        self._shape.append(gcd(WIDEST, self.strides[lane], offset))  # how far it is aligned
+        self._shape.append(gcd(width, self.strides[lane], offset))  # how far what has such a width is aligned there
         self.slots.append(_slot(("offset", "", offset, lane, _ALONE, "i64")))
 
     def _lane(self, lane: int) -> None:
@@ -161,8 +161,8 @@ class Outline:
                 self._expression(expr.left)
                 self._expression(expr.right)
                 return
-            case nodes.Get(_, place):
-                self._place(place)
+            case nodes.Get(type_, place):
+                self._place(place, nodes.WIDTH[type_])
             case nodes.IsText(address, _) | nodes.Nearest(address, _, _):
                 self._address(address)
             case _:
