@@ -79,10 +79,10 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
     if kind_of(role) in ("encode", "size"):
         walk, kernel = reader(unit, lanes, manners), undamaged_kernel(kernel)
         views, within = frozenset(each.direct.lane for each in viewed_by(walk)), {lane: each.within for lane, each in walk.within.items()}
-        forward = not unit.layout.recursive
+        descents = descents_of(unit).get(role)
+        forward = descents is not None or not unit.layout.recursive
         lanes = replace(lanes, addressed=walk.addressed, viewed=views, within=within, row=True, forward=forward)
         moving = frozenset(copied_lanes(lanes, directs_of(walk, "source"), walk)) - views
-        descents = descents_of(unit).get(role)
         return print_kernel(kernel, replace(lanes, moving=moving), role, origins, () if descents is None else (descents,))
     found, lanes = decoder_of(unit, manners, kernel, lanes, inner)
     found = without_asking(found, lanes.opened)

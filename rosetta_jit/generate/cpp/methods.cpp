@@ -80,7 +80,7 @@ $bind
 /* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
 rosetta_jit::detail::outcome<std::size_t> measured(${name}_source *holder, const $row &given_row, const ${name}_holder &memory)
 {
-    struct failure failure$unmeasured;
+    struct failure failure$unsized;
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);
@@ -89,6 +89,7 @@ rosetta_jit::detail::outcome<std::size_t> measured(${name}_source *holder, const
     if (size < 0) {
         return unplaced(report(size_sites, failure, 0, memory));
     }
+$known
     return static_cast<std::size_t>(size);
 }
 
@@ -107,6 +108,7 @@ ${inline}rosetta_jit::detail::outcome<std::size_t> written(${name}_source *holde
     }
     return static_cast<std::size_t>(result);
 }
+$tried
 } // namespace
 
 rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
@@ -121,6 +123,7 @@ rosetta_jit::detail::outcome<std::size_t> codec::encode_any(const ::$name::holde
     ${name}_source given(*$memory, *this);
 $local
     gather(source, &given, row);
+$unmeasured
 $measure
     return written(&given, row, *$memory, bytes, capacity);
 }
@@ -141,6 +144,22 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
     bytes.resize(*found);
     return rosetta_jit::done{};
 }
+/* == tried == */
+
+/* How many bytes are written where no length is known; negative where there is no room, or they move too often. */
+int64_t tried(${name}_source *holder, const $row &given_row, void *target, std::size_t capacity)
+{
+    unsigned char *const bytes = static_cast<unsigned char *>(target);
+    const int64_t end = reach(capacity);
+    struct failure failure$unset;
+    holder->lengths.left = end * 2;
+    return $run;
+}
+/* == unmeasured == */
+    const int64_t found = tried(&given, row, bytes, capacity);
+    if (found >= 0) {
+        return static_cast<std::size_t>(found);
+    }
 /* == measure == */
     const auto size = measured(&given, row, *$memory);
     if (size.failed != nullptr) {
