@@ -596,10 +596,13 @@ template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, st
 /* Sets bytes whose number compilers know, for the same reason. */
 template <std::int64_t Size> ROSETTA_JIT_INLINE void fill_known(void *target, std::int64_t to, int byte) noexcept
 {
-    constexpr std::int64_t AT_ONCE = 32, MANY = 1024;
+    constexpr std::int64_t AT_ONCE = 32, FEW = 4 * AT_ONCE, MANY = 1024;
     unsigned char *const at = static_cast<unsigned char *>(target) + to;
     if constexpr (Size <= AT_ONCE || Size > MANY) {
         std::memset(at, byte, static_cast<std::size_t>(Size));
+    } else if constexpr (Size <= FEW) {
+        std::memset(at, byte, AT_ONCE);
+        fill_known<Size - AT_ONCE>(target, to + AT_ONCE, byte);
     } else {
         for (std::int64_t done = 0; done < Size - AT_ONCE; done += AT_ONCE) {
             std::memset(at + done, byte, AT_ONCE);
@@ -1334,7 +1337,19 @@ template <class Container> std::int64_t count_of(const Container &from)
     return static_cast<std::int64_t>(std::size(from));
 }
 
-template <class Container> void resize_to(Container &target, std::int64_t count)
+/* The same of a list of messages or texts, which has another number of them. */
+template <class Container> ROSETTA_JIT_APART void resize_elements(Container &target, std::int64_t count)
+{
+    target.Reserve(static_cast<int>(count));
+    while (target.size() < count) {
+        target.Add();
+    }
+    while (target.size() > count) {
+        target.RemoveLast();
+    }
+}
+
+template <class Container> ROSETTA_JIT_INLINE void resize_to(Container &target, std::int64_t count)
 {
     if constexpr (is_repeated<Container>::value) {
         if constexpr (std::is_arithmetic_v<typename Container::value_type>) {
@@ -1345,15 +1360,8 @@ template <class Container> void resize_to(Container &target, std::int64_t count)
             } else {
                 target.Truncate(static_cast<int>(count));
             }
-        } else if (target.size() < count) {
-            target.Reserve(static_cast<int>(count));
-            while (target.size() < count) {
-                target.Add();
-            }
-        } else {
-            while (target.size() > count) {
-                target.RemoveLast();
-            }
+        } else if (target.size() != count) {
+            resize_elements(target, count);
         }
     } else if constexpr (can_resize<Container>::value) {
         target.resize(static_cast<std::size_t>(count));
