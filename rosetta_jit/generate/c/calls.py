@@ -128,7 +128,7 @@ def _length(function: Function, call: nodes.Call) -> None:
     """Where something with a length begins, or ends: what is written knows its lengths only if it was measured."""
     scope = function.scope
     scope.hidden.add(0)
-    found, lengths = scope.locals.identifier(call.results[0].name), f"{scope.takes('holder')}->lengths"
+    found, lengths = scope.locals.identifier(call.results[0].name), f"{scope.takes('holder')}->given_lengths"
     given = ", ".join(bare(expression(scope, each)) for each in call.arguments)
     if call.routine == OPENED:
         function.line(f"const int64_t {found} = {lengths}.opened({given});")

@@ -35,6 +35,8 @@ OWN_WORDS = frozenset(
         "problem",
         "given_row",
         "given_object",
+        "given_lengths",
+        "given_place",
         "gathered",
         "kept",
     }

@@ -132,10 +132,12 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
 {
     ${name}_source given(*$memory, *this);
     gather(source, &given, $memory->message);
+$soon
     const rosetta_jit::result<std::size_t> size = measured(&given, $memory->message, *$memory);
     if (!size) {
         return size.error();
     }
+$later
     bytes.resize(*size);
     const rosetta_jit::result<std::size_t> found = $again;
     if (!found) {
@@ -146,19 +148,32 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
 }
 /* == tried == */
 
+constexpr std::size_t LARGEST_PLACE = std::size_t{1} << 20;
+
 /* How many bytes are written where no length is known; negative where there is no room, or they move too often. */
 int64_t tried(${name}_source *holder, const $row &given_row, void *target, std::size_t capacity)
 {
     unsigned char *const bytes = static_cast<unsigned char *>(target);
     const int64_t end = reach(capacity);
     struct failure failure$unset;
-    holder->lengths.left = end * 2;
+    holder->given_lengths.left = end * 2;
     return $run;
 }
 /* == unmeasured == */
     const int64_t found = tried(&given, row, bytes, capacity);
     if (found >= 0) {
         return static_cast<std::size_t>(found);
+    }
+/* == soon == */
+    auto &place = $memory->given_place; /* so that bytes get no memory before their number is known */
+    const int64_t soon = tried(&given, $memory->message, place.data(), place.size());
+    if (soon >= 0) {
+        bytes.assign(reinterpret_cast<const char *>(place.data()), static_cast<std::size_t>(soon));
+        return rosetta_jit::done{};
+    }
+/* == later == */
+    if (*size <= LARGEST_PLACE) {
+        place.resize(std::max(place.size(), *size));
     }
 /* == measure == */
     const auto size = measured(&given, row, *$memory);

@@ -76,7 +76,9 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
         unset=unset(encode.attempts[0]),
         tried=_tried(unit, known, row, encode.attempts[0]),
         unmeasured=known["unmeasured"] if has_lengths(unit) else "",
-        known="    holder->lengths = {holder->scratch[0].bytes, 0, 0};" if has_lengths(unit) else "",
+        later=known["later"] if has_lengths(unit) else "",
+        soon=Template(known["soon"]).substitute(memory=memory) if has_lengths(unit) else "",
+        known="    holder->given_lengths = {holder->scratch[0].bytes, 0, 0};" if has_lengths(unit) else "",
         measure=measure,
     )
 
@@ -118,7 +120,7 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
     initial = [f"{name}(memory.{'gathered.' if name in of_its_own else ''}{name})" for _, name in members]
     members += [("int64_t ", "most"), ("int64_t ", "now"), ("int64_t ", "number")]
     initial += ["most(rosetta_jit::detail::most_rows(std::size_t{1} << 39))", "now(owner.now)", "number(owner.number)"]
-    members += [("rosetta_jit::detail::lengths ", "lengths")] if has_lengths(unit) else []
+    members += [("rosetta_jit::detail::lengths ", "given_lengths")] if has_lengths(unit) else []
     if unit.state:
         members.append(("codec::state *", "state"))
         initial.append("state(&owner.kept)")
