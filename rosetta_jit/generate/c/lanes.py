@@ -37,6 +37,7 @@ OWN_WORDS = frozenset(
         "given_object",
         "given_lengths",
         "given_place",
+        "given_waits",
         "gathered",
         "kept",
     }

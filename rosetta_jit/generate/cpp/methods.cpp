@@ -149,24 +149,31 @@ $later
 /* == tried == */
 
 constexpr std::size_t LARGEST_PLACE = std::size_t{1} << 20;
+constexpr int MEASURED_FIRST = 50; /* messages behind one that could not be written at once */
 
-/* How many bytes are written where no length is known; negative where there is no room, or they move too often. */
-int64_t tried(${name}_source *holder, const $row &given_row, void *target, std::size_t capacity)
+/* How many bytes are written where no length is known; negative where there is no room, or parts move too often. */
+int64_t tried(${name}_source *holder, const $row &given_row, ${name}_holder &memory, void *target, std::size_t capacity)
 {
+    if (memory.given_waits > 0) {
+        memory.given_waits--;
+        return -1;
+    }
     unsigned char *const bytes = static_cast<unsigned char *>(target);
     const int64_t end = reach(capacity);
     struct failure failure$unset;
-    holder->given_lengths.left = end * 2;
-    return $run;
+    holder->given_lengths.left = 1024;
+    const int64_t result = $run;
+    memory.given_waits = holder->given_lengths.left < 0 ? MEASURED_FIRST : 0;
+    return result;
 }
 /* == unmeasured == */
-    const int64_t found = tried(&given, row, bytes, capacity);
+    const int64_t found = tried(&given, row, *$memory, bytes, capacity);
     if (found >= 0) {
         return static_cast<std::size_t>(found);
     }
 /* == soon == */
     auto &place = $memory->given_place; /* so that bytes get no memory before their number is known */
-    const int64_t soon = tried(&given, $memory->message, place.data(), place.size());
+    const int64_t soon = tried(&given, $memory->message, *$memory, place.data(), place.size());
     if (soon >= 0) {
         bytes.assign(reinterpret_cast<const char *>(place.data()), static_cast<std::size_t>(soon));
         return rosetta_jit::done{};
@@ -174,6 +181,8 @@ int64_t tried(${name}_source *holder, const $row &given_row, void *target, std::
 /* == later == */
     if (*size <= LARGEST_PLACE) {
         place.resize(std::max(place.size(), *size));
+    } else {
+        $memory->given_waits = MEASURED_FIRST;
     }
 /* == measure == */
     const auto size = measured(&given, row, *$memory);

@@ -188,7 +188,9 @@ def _holder(
         lines += ["    struct {", *rows, "    } gathered; /* to write a message */"]
     lines += [f"    rosetta_jit::detail::scratch scratch[{parts.hidden}];"] if parts.hidden else []
     lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
-    lines += ["    std::vector<unsigned char> given_place; /* where a message may be written first */"] if has_lengths(unit) else []
+    if has_lengths(unit):
+        lines += ["    std::vector<unsigned char> given_place; /* where a message may be written first */"]
+        lines += ["    int given_waits = 0; /* so many messages are measured before one is written otherwise */"]
     lines += ["    codec::state *state = nullptr;"] if unit.state else []
     return "\n".join([*lines, "};", ""])
 

@@ -756,7 +756,8 @@ inline std::int64_t write_varint_exactly(unsigned char *target, std::uint64_t nu
 }
 
 /* The lengths in a message that is written. If it was measured first, they are known in the order in which they come; else each has a byte, and what it is
-   of moves where that takes more. As often as messages lie within each other, as often they may move: of so many bytes none are left, and writing ends. */
+   of moves where that takes more. As often as messages lie within each other, as often they may move: where no byte is left of those that may, as more than
+   measuring would take, writing ends. */
 struct lengths {
     const unsigned char *known = nullptr;
     std::int64_t next = 0;
@@ -770,6 +771,7 @@ struct lengths {
             std::memcpy(&size, known + next++ * 8, sizeof size);
             return at + varint_size(static_cast<std::uint64_t>(size));
         }
+        left += 128;
         return at + 1;
     }
 
