@@ -67,7 +67,7 @@ class NotNested(Exception):  # noqa: N818 - no error: such a loop stays one
 class Visit:
     """All rows of an array, ``count`` of them from ``start`` on: in a decoder the span at ``place`` says so.
 
-    ``shallow`` checks the depth around them, ``depth`` is how deep they are.
+    ``shallow`` checks the depth around them, ``depth`` is how deep they are. With a ``number`` it is one of them alone.
     """
 
     lane: int
@@ -76,23 +76,27 @@ class Visit:
     shallow: Expect | None
     place: Place | None
     depth: Expr
+    number: Expr | None = None
 
 
 @dataclass(slots=True)
 class Descents:
-    """What is done for the message, and for each ``row`` of a lane, at a position and a ``depth``.
+    """What is done for the message, and for each ``row`` of a lane, at a position and a ``depth``, as far as they are ``given``.
 
     ``visits`` are the calls of no routine, by name: their arguments are where the rows begin in the message and how many there are, their
-    result is where they end. ``left`` has the lanes whose rows all messages within others share, by number.
+    result is where they end. A visit of one message alone has the arguments that its function is given; what measures it gives its size.
+    ``left`` has the lanes whose rows all messages within others share, by number, ``lengths`` counts sizes that are known so far.
     """
 
     at: Local
     row: Local
     depth: Local
+    given: tuple[Local, ...]
     body: Block = ()
     rows: dict[int, Block] = field(default_factory=dict[int, "Block"])
     visits: dict[str, Visit] = field(default_factory=dict[str, Visit])
     left: dict[int, int] = field(default_factory=dict[int, int])
+    lengths: Local | None = None
 
     def behind(self) -> frozenset[str]:
         """The locals that are places behind rows, and other numbers that are 0 or more."""
@@ -114,7 +118,7 @@ def descended(block: Block, layout: Layout) -> Descents:
             raise NotNested
     if not asked == switched == stack.state or not all(isinstance(each, Fill | Var | Let | Expect) for each in before):
         raise NotNested
-    found = Descents(at, stack.row, depth)
+    found = Descents(at, stack.row, depth, (at, depth))
     reader = _Reader(dict(cases), found, stack)
     own, end = reader.chain(0, index(0), index(0))
     while reader.pending:
@@ -202,18 +206,18 @@ def _at(block: Block, values: dict[Local, Expr]) -> Block:
     """A block with values in place of some locals; those that stand for a place near another one go with them."""
     found: list[Stmt] = []
     for stmt in block:
-        placed = _placed(stmt, values)
-        match placed:
+        moved = placed(stmt, values)
+        match moved:
             case Let(name, Const("i64") as place):
                 values[Local("i64", name)] = place
             case Let(name, Local() | Binary("add", Local(), Const()) as place) if split(place)[0] in values.values():
                 values[Local("i64", name)] = place
             case _:
-                found.append(placed)
+                found.append(moved)
     return tuple(found)
 
 
-def _placed(stmt: Stmt, values: dict[Local, Expr]) -> Stmt:
+def placed(stmt: Stmt, values: dict[Local, Expr]) -> Stmt:
     """A statement with values in place of some locals."""
 
     def put(expr: Expr) -> Expr:
@@ -225,4 +229,4 @@ def _placed(stmt: Stmt, values: dict[Local, Expr]) -> Stmt:
             case _:
                 return found
 
-    return with_blocks(with_expressions(stmt, put), lambda block: tuple(_placed(each, values) for each in block))
+    return with_blocks(with_expressions(stmt, put), lambda block: tuple(placed(each, values) for each in block))

@@ -21,6 +21,6 @@ def undamaged(block: Block, sites: Sequence[Site], details: Collection[str] = SP
     return tuple(with_blocks(stmt, lambda inner: undamaged(inner, sites, details)) for stmt in kept)
 
 
-def undamaged_kernel(kernel: Kernel) -> Kernel:
-    """A kernel whose bodies have no checks of rows that are its own; its routines keep theirs."""
-    return with_bodies(kernel, tuple(undamaged(body, kernel.sites, OWN_ROWS) for body in kernel.bodies))
+def undamaged_kernel(kernel: Kernel, details: Collection[str] = OWN_ROWS) -> Kernel:
+    """A kernel whose bodies have no checks of rows that are its own, or those that say such ``details``; its routines keep theirs."""
+    return with_bodies(kernel, tuple(undamaged(body, kernel.sites, details) for body in kernel.bodies))

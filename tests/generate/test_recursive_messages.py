@@ -116,6 +116,11 @@ def of_random_fields(seed: str) -> tuple[str, Callable[[random.Random, int], byt
     return text, made
 
 
+def deep(depth: int) -> bytes:
+    """A message of the first schema, within which each has one: as many lengths are of more than a byte."""
+    return (field(1, deep(depth - 1)) if depth else b"") + field(2, depth + 1) + field(3, b"x" * 300)
+
+
 SCHEMAS = {"one": (ONE, one), "several": (SEVERAL, several), "tree": (TREE, tree)}
 SCHEMAS |= {name: of_random_fields(name) for name in (f"random {seed}" for seed in range(6))}
 
@@ -125,7 +130,7 @@ def given(name: str) -> list[bytes]:
     chance = random.Random(name)
     good = [SCHEMAS[name][1](chance, depth) for depth in (0, 1, 2, 5, 4, 1, 0, 3)]
     small = [each for each in good if len(each) < 2000]
-    return [*good, *harmed(small, 20, name), *good]
+    return [*good, *([deep(60), deep(3)] if name == "one" else []), *harmed(small, 20, name), *good]
 
 
 @cpp.needs_cpp

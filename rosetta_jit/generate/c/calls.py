@@ -10,6 +10,7 @@ from rosetta_jit.generate.c.room import moved
 from rosetta_jit.generate.c.varint_loops import REPLACED, replaced, sooner
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.descents import Visit
+from rosetta_jit.generate.messages_in_turn import CLOSED, OPENED
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import nodes
@@ -37,11 +38,14 @@ def print_call(function: Function, call: nodes.Call) -> None:
     """Results come through pointers; what the function returns is the number of its own site that failed, or 0."""
     scope = function.scope
     if (visit := function.visits.get(call.routine)) is not None:
-        _visit(function, call, visit)
+        (_visit if visit.number is None else _visit_one)(function, call, visit)
         return
     if scope.lanes.dialect == "c++" and call.routine in REPLACED:
         for line in replaced(scope, call):
             function.line(line)
+        return
+    if call.routine in (OPENED, CLOSED):
+        _length(function, call)
         return
     routine = function.routines[call.routine]
     for result in call.results:
@@ -71,7 +75,7 @@ def print_call(function: Function, call: nodes.Call) -> None:
 
 def positions_found(function: Function, call: nodes.Call) -> frozenset[int]:
     """Which results of a call are positions of the message."""
-    if call.routine in function.visits:
+    if call.routine in function.visits or call.routine in (OPENED, CLOSED):
         return frozenset({0})
     return function.routines[call.routine].positions if call.routine in function.routines else frozenset()
 
@@ -103,6 +107,33 @@ def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
         for lane in sorted(lanes.moving):
             scope.moved.add(lane)
             function.line(moved(lanes, lane))
+
+
+def _visit_one(function: Function, call: nodes.Call, visit: Visit) -> None:
+    """One message, which its function measures or writes. The lengths that it adds may move those at hand."""
+    assert visit.number is not None
+    scope, lanes = function.scope, function.scope.lanes
+    found = scope.locals.identifier(call.results[0].name)
+    message = _written(scope, visit, bare(expression(scope, visit.number)))
+    given = (*map(scope.takes, shared_by_visits(function)), message, *(bare(expression(scope, each)) for each in call.arguments))
+    function.line(f"const int64_t {found} = {visiting(function, visit.lane)}({', '.join(given)});")
+    with function.block(f"if ({found} < 0)"):
+        function.line(f"return {found};")
+    for lane in sorted((*lanes.moving, *([lanes.own] if function.role == "size" else ()))):
+        scope.moved.add(lane)
+        function.line(moved(lanes, lane))
+
+
+def _length(function: Function, call: nodes.Call) -> None:
+    """Where something with a length begins, or ends: what is written knows its lengths only if it was measured."""
+    scope = function.scope
+    scope.hidden.add(0)
+    found, lengths = scope.locals.identifier(call.results[0].name), f"{scope.takes('holder')}->given_lengths"
+    given = ", ".join(bare(expression(scope, each)) for each in call.arguments)
+    if call.routine == OPENED:
+        function.line(f"const int64_t {found} = {lengths}.opened({given});")
+    else:
+        function.line(f"const int64_t {found} = {lengths}.closed({scope.takes('bytes')}, {expression(scope, END)}, {given});")
 
 
 def _written(scope: Scope, visit: Visit, number: str) -> str:

@@ -35,6 +35,9 @@ OWN_WORDS = frozenset(
         "problem",
         "given_row",
         "given_object",
+        "given_lengths",
+        "given_place",
+        "given_waits",
         "gathered",
         "kept",
     }

@@ -44,7 +44,8 @@ def _head(function: Function, lane: int, descents: Descents, direction: Directio
     shared = shared_by_visits(function)
     given = declared((*shared, "given_object"), direction, lanes) if direction == "decode" else declared(shared, direction, lanes)
     given += [] if direction == "decode" else [f"const {lanes.objects(lane)}::type &object"]
-    own = [f"int64_t {name(each.name)}" for each in (descents.at, descents.depth)]
+    own = [f"int64_t {name(each.name)}" for each in descents.given]
+    own += [] if descents.lengths is None else [f"int64_t &{name(descents.lengths.name)}"]
     return f"static inline int64_t {visiting(function, lane)}({', '.join((*given, *own))})"
 
 

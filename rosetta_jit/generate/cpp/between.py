@@ -158,12 +158,14 @@ def _take_rows(walk: Walk, row: str, lane: int, spot: Spot) -> tuple[str, str]:
 
 def _each(walk: Walk, type_: Type, lane: int, start: str, count: str, spot: Spot) -> None:
     """Rows from ``start`` on, and the elements that belong to them."""
-    index = walk.local("i")
+    index, begin = walk.local("i"), "0"
     if walk.direction == "encode":
         first = walk.local("first")
         walk.lines("begin", spot, first=first)
         spot = Spot(first)
-    with walk.writer.indented(f"for (std::int64_t {index} = 0; {index} < {count}; {index}++) {{"):
+    else:
+        begin, count = f"0, {walk.local('count')} = {count}", walk.local("count")
+    with walk.writer.indented(f"for (std::int64_t {index} = {begin}; {index} < {count}; {index}++) {{"):
         _of_row(walk, type_, lane, f"{start} + {index}", Spot(walk.text("element", spot, index=index)))
     walk.writer.line("}")
 

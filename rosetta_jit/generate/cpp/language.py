@@ -20,7 +20,7 @@ from rosetta_jit.generate.cpp.opened import without_asking, without_counting
 from rosetta_jit.generate.cpp.put_at_once import put_at_once
 from rosetta_jit.generate.cpp.reading import copied_lanes, directs_of, reader, viewed_by
 from rosetta_jit.generate.cpp.source import source
-from rosetta_jit.generate.undamaged import undamaged_kernel
+from rosetta_jit.generate.undamaged import SPANS, undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.model.types import Struct
@@ -79,12 +79,12 @@ def _printed(unit: Unit, manners: Manners, kernel: Kernel, lanes: Lanes, role: R
     if kind_of(role) in ("encode", "size"):
         walk, kernel = reader(unit, lanes, manners), undamaged_kernel(kernel)
         views, within = frozenset(each.direct.lane for each in viewed_by(walk)), {lane: each.within for lane, each in walk.within.items()}
-        forward = not unit.layout.recursive
+        descents = descents_of(unit).get(role)
+        forward = descents is not None or not unit.layout.recursive
         lanes = replace(lanes, addressed=walk.addressed, viewed=views, within=within, row=True, forward=forward)
         moving = frozenset(copied_lanes(lanes, directs_of(walk, "source"), walk)) - views
-        descents = descents_of(unit).get(role)
         return print_kernel(kernel, replace(lanes, moving=moving), role, origins, () if descents is None else (descents,))
     found, lanes = decoder_of(unit, manners, kernel, lanes, inner)
-    found = without_asking(found, lanes.opened)
+    found = without_asking(undamaged_kernel(found, SPANS), lanes.opened)
     found = found if wire_of(role) else without_counting(found, lanes.given)
     return print_kernel(found, lanes, role, origins, () if inner is None else inner.parted(found))

@@ -11,9 +11,11 @@ from collections.abc import Iterator
 from rosetta_jit.generate.cpp.spots import Spot
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.descents import Descents, NotNested, descended
+from rosetta_jit.generate.messages_in_turn import visited_in_turn
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of
-from rosetta_jit.model.layout import Row, Slot, Span, Variant, map_entry
+from rosetta_jit.kernel.ir import Kernel
+from rosetta_jit.model.layout import Layout, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Map, Optional, Ref, Struct, Type, Union
 from rosetta_jit.startup.dataclass import replace
 
@@ -23,13 +25,26 @@ PLAIN = "std::remove_cv_t<std::remove_reference_t<decltype({})>>"
 
 def descents_of(unit: Unit) -> dict[Role, Descents]:
     """What each kernel does that writes or measures; empty where one is no descent from messages to those within them."""
-    kernels = {role: undamaged_kernel(kernel) for role, kernel in unit.kernels.items() if kind_of(role) in ("encode", "size")}
+    kernels = {role: kernel for role, kernel in unit.kernels.items() if kind_of(role) in ("encode", "size")}
     if not unit.layout.recursive or any(len(each.bodies) != 1 for each in kernels.values()):
         return {}
     try:
-        return {role: descended(kernel.bodies[0], unit.layout) for role, kernel in kernels.items()}
+        return {role: _descents(kernel, unit.layout) for role, kernel in kernels.items()}
     except NotNested:
         return {}
+
+
+def _descents(kernel: Kernel, layout: Layout) -> Descents:
+    """The same of one kernel, which goes down from messages to those within them, or through a list of these."""
+    try:
+        return descended(undamaged_kernel(kernel).bodies[0], layout)
+    except NotNested:
+        return visited_in_turn(kernel, layout)
+
+
+def has_lengths(unit: Unit) -> bool:
+    """Whether messages within others have lengths, which may be known before these are written."""
+    return any(each.lengths is not None for each in descents_of(unit).values())
 
 
 def visited_lanes(unit: Unit) -> frozenset[int]:

@@ -80,7 +80,7 @@ $bind
 /* The bytes of the message. Where parts of it have lengths, these are left in the scratch memory. */
 rosetta_jit::detail::outcome<std::size_t> measured(${name}_source *holder, const $row &given_row, const ${name}_holder &memory)
 {
-    struct failure failure$unmeasured;
+    struct failure failure$unsized;
     const int64_t end = INT64_MAX;
     static_cast<void>(end);
     static_cast<void>(holder);
@@ -89,6 +89,7 @@ rosetta_jit::detail::outcome<std::size_t> measured(${name}_source *holder, const
     if (size < 0) {
         return unplaced(report(size_sites, failure, 0, memory));
     }
+$known
     return static_cast<std::size_t>(size);
 }
 
@@ -107,6 +108,7 @@ ${inline}rosetta_jit::detail::outcome<std::size_t> written(${name}_source *holde
     }
     return static_cast<std::size_t>(result);
 }
+$tried
 } // namespace
 
 rosetta_jit::result<std::size_t> codec::try_size(const ::$name::holder &source)
@@ -121,6 +123,7 @@ rosetta_jit::detail::outcome<std::size_t> codec::encode_any(const ::$name::holde
     ${name}_source given(*$memory, *this);
 $local
     gather(source, &given, row);
+$unmeasured
 $measure
     return written(&given, row, *$memory, bytes, capacity);
 }
@@ -129,10 +132,12 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
 {
     ${name}_source given(*$memory, *this);
     gather(source, &given, $memory->message);
+$soon
     const rosetta_jit::result<std::size_t> size = measured(&given, $memory->message, *$memory);
     if (!size) {
         return size.error();
     }
+$later
     bytes.resize(*size);
     const rosetta_jit::result<std::size_t> found = $again;
     if (!found) {
@@ -141,6 +146,44 @@ rosetta_jit::result<rosetta_jit::done> codec::try_encode(const ::$name::holder &
     bytes.resize(*found);
     return rosetta_jit::done{};
 }
+/* == tried == */
+
+constexpr std::size_t LARGEST_PLACE = std::size_t{1} << 20;
+constexpr int MEASURED_FIRST = 50; /* messages behind one that could not be written at once */
+
+/* How many bytes are written where no length is known; negative where there is no room, or parts move too often. */
+int64_t tried(${name}_source *holder, const $row &given_row, ${name}_holder &memory, void *target, std::size_t capacity)
+{
+    if (memory.given_waits > 0) {
+        memory.given_waits--;
+        return -1;
+    }
+    unsigned char *const bytes = static_cast<unsigned char *>(target);
+    const int64_t end = reach(capacity);
+    struct failure failure$unset;
+    holder->given_lengths.left = 1024;
+    const int64_t result = $run;
+    memory.given_waits = holder->given_lengths.left < 0 ? MEASURED_FIRST : 0;
+    return result;
+}
+/* == unmeasured == */
+    const int64_t found = tried(&given, row, *$memory, bytes, capacity);
+    if (found >= 0) {
+        return static_cast<std::size_t>(found);
+    }
+/* == soon == */
+    auto &place = $memory->given_place; /* so that bytes get no memory before their number is known */
+    const int64_t soon = tried(&given, $memory->message, *$memory, place.data(), place.size());
+    if (soon >= 0) {
+        bytes.assign(reinterpret_cast<const char *>(place.data()), static_cast<std::size_t>(soon));
+        return rosetta_jit::done{};
+    }
+/* == later == */
+    if (*size <= LARGEST_PLACE) {
+        place.resize(std::max(place.size(), *size));
+    } else {
+        $memory->given_waits = MEASURED_FIRST;
+    }
 /* == measure == */
     const auto size = measured(&given, row, *$memory);
     if (size.failed != nullptr) {

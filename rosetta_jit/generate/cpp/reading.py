@@ -12,7 +12,7 @@ from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.always import directs
 from rosetta_jit.generate.cpp.lists import row_name, viewed
 from rosetta_jit.generate.cpp.lists_within import lists_within
-from rosetta_jit.generate.cpp.messages_within import visited_lanes
+from rosetta_jit.generate.cpp.messages_within import has_lengths, visited_lanes
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
 from rosetta_jit.generate.cpp.spots import Direct, Listed
 from rosetta_jit.generate.cpp.walk import Walk
@@ -71,11 +71,23 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
         reset="\n".join(begun),
         bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs),
         size=run(size, "failure"),
-        unmeasured=unset(size),
+        unsized=unset(size),
         run=run(encode.attempts[0], "failure"),
         unset=unset(encode.attempts[0]),
+        tried=_tried(unit, known, row, encode.attempts[0]),
+        unmeasured=Template(known["unmeasured"]).substitute(memory=memory) if has_lengths(unit) else "",
+        later=Template(known["later"]).substitute(memory=memory) if has_lengths(unit) else "",
+        soon=Template(known["soon"]).substitute(memory=memory) if has_lengths(unit) else "",
+        known="    holder->given_lengths = {holder->scratch[0].bytes, 0, 0};" if has_lengths(unit) else "",
         measure=measure,
     )
+
+
+def _tried(unit: Unit, known: dict[str, str], row: str, attempt: Attempt) -> str:
+    """The function that writes a message whose lengths are not known."""
+    if not has_lengths(unit):
+        return ""
+    return Template(known["tried"]).substitute(name=unit.name, row=row, unset=unset(attempt), run=run(attempt, "failure"))
 
 
 def unset(attempt: Attempt) -> str:
@@ -108,6 +120,7 @@ def source_struct(unit: Unit, parts: Parts, directs: list[Direct], walk: Walk) -
     initial = [f"{name}(memory.{'gathered.' if name in of_its_own else ''}{name})" for _, name in members]
     members += [("int64_t ", "most"), ("int64_t ", "now"), ("int64_t ", "number")]
     initial += ["most(rosetta_jit::detail::most_rows(std::size_t{1} << 39))", "now(owner.now)", "number(owner.number)"]
+    members += [("rosetta_jit::detail::lengths ", "given_lengths")] if has_lengths(unit) else []
     if unit.state:
         members.append(("codec::state *", "state"))
         initial.append("state(&owner.kept)")

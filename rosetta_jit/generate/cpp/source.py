@@ -20,7 +20,7 @@ from rosetta_jit.generate.cpp.header import filled_in
 from rosetta_jit.generate.cpp.lists import row_name, row_struct, taken
 from rosetta_jit.generate.cpp.lists_in_place import Opened, messages_of, opened_lists
 from rosetta_jit.generate.cpp.messages_in_place import MessagesInPlace
-from rosetta_jit.generate.cpp.messages_within import classes, collecting, collectors
+from rosetta_jit.generate.cpp.messages_within import classes, collecting, collectors, has_lengths
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import (
@@ -188,6 +188,9 @@ def _holder(
         lines += ["    struct {", *rows, "    } gathered; /* to write a message */"]
     lines += [f"    rosetta_jit::detail::scratch scratch[{parts.hidden}];"] if parts.hidden else []
     lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
+    if has_lengths(unit):
+        lines += ["    std::vector<unsigned char> given_place; /* where a message may be written first */"]
+        lines += ["    int given_waits = 0; /* so many messages are measured before one is written otherwise */"]
     lines += ["    codec::state *state = nullptr;"] if unit.state else []
     return "\n".join([*lines, "};", ""])
 

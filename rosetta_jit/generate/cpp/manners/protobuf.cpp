@@ -18,7 +18,9 @@ rosetta_jit::detail::put($row, $object.$field());
 $object.has_$field()
 
 /* == optional clear == */
-$object.clear_$field();
+if ($object.has_$field()) {
+    $object.clear_$field();
+}
 
 /* == optional make == */
 
@@ -29,7 +31,9 @@ $at
 $object.has_$field()
 
 /* == link clear == */
-$object.clear_$field();
+if ($object.has_$field()) {
+    $object.clear_$field();
+}
 
 /* == link make == */
 

@@ -9,7 +9,7 @@ from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.descents import Descents, NotNested, descended
 from rosetta_jit.generate.python.encoding.object_rows import ObjectScope
 from rosetta_jit.generate.python.encoding.parts import Parts
-from rosetta_jit.generate.python.encoding.recursive_rows import RowBody, row_function, without_work_list
+from rosetta_jit.generate.python.encoding.recursive_rows import row_function, rows_in_parts
 from rosetta_jit.generate.python.passes.asked import counts_asked_first
 from rosetta_jit.generate.python.passes.bools import with_stored_bools
 from rosetta_jit.generate.python.passes.counted import counted
@@ -21,6 +21,7 @@ from rosetta_jit.generate.python.printing.printed import Function, Objects
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Unit
+from rosetta_jit.generate.work_lists import RowBody
 from rosetta_jit.kernel.ir import Kernel, Routine
 from rosetta_jit.kernel.nodes import Block, Expect, Return
 from rosetta_jit.kernel.terms import index
@@ -56,7 +57,7 @@ def encoder_in_parts(unit: Unit, kernel: Kernel, lanes: Lanes, paths: tuple[str,
     scope.numpy = unit.numpy
     body = undamaged(reached(kernel.bodies[0]), kernel.sites)
     descents = _descents(body, unit)
-    body, rows = without_work_list(body, unit.layout) if descents is None else (descents.body, dict[int, RowBody]())
+    body, rows = rows_in_parts(body, unit.layout) if descents is None else (descents.body, dict[int, RowBody]())
     scope.keeps_long = bool(rows)
     parts = _parts(unit, kernel, scope, body, written, depth=2)
     parts.has_long = bool(rows)

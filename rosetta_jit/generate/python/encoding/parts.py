@@ -14,7 +14,6 @@ from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.encoding.loops_in_parts import Loops
 from rosetta_jit.generate.python.encoding.object_rows import Asked, Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.encoding.packed import Part
-from rosetta_jit.generate.python.encoding.recursive_rows import is_hidden
 from rosetta_jit.generate.python.passes.asked import asked_count, taken_late
 from rosetta_jit.generate.python.passes.defaults import asked_first, reads_of
 from rosetta_jit.generate.python.passes.positions import NotInParts, Positions
@@ -27,6 +26,7 @@ from rosetta_jit.generate.python.printing.late_lists import LACKS, runs_of_lists
 from rosetta_jit.generate.python.printing.printed import Function
 from rosetta_jit.generate.python.printing.statements import print_statement
 from rosetta_jit.generate.unit import Unit
+from rosetta_jit.generate.work_lists import is_hidden
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import index

@@ -596,10 +596,13 @@ template <std::int64_t Size> ROSETTA_JIT_INLINE void copy_known(void *target, st
 /* Sets bytes whose number compilers know, for the same reason. */
 template <std::int64_t Size> ROSETTA_JIT_INLINE void fill_known(void *target, std::int64_t to, int byte) noexcept
 {
-    constexpr std::int64_t AT_ONCE = 32, MANY = 1024;
+    constexpr std::int64_t AT_ONCE = 32, FEW = 4 * AT_ONCE, MANY = 1024;
     unsigned char *const at = static_cast<unsigned char *>(target) + to;
     if constexpr (Size <= AT_ONCE || Size > MANY) {
         std::memset(at, byte, static_cast<std::size_t>(Size));
+    } else if constexpr (Size <= FEW) {
+        std::memset(at, byte, AT_ONCE);
+        fill_known<Size - AT_ONCE>(target, to + AT_ONCE, byte);
     } else {
         for (std::int64_t done = 0; done < Size - AT_ONCE; done += AT_ONCE) {
             std::memset(at + done, byte, AT_ONCE);
@@ -751,6 +754,51 @@ inline std::int64_t write_varint_exactly(unsigned char *target, std::uint64_t nu
     *at++ = static_cast<unsigned char>(number);
     return at - target;
 }
+
+/* The lengths in a message that is written. If it was measured first, they are known in the order in which they come; else each has a byte, and what it is
+   of moves where that takes more. As often as messages lie within each other, as often they may move: where no byte is left of those that may, as more than
+   measuring would take, writing ends. */
+struct lengths {
+    const unsigned char *known = nullptr;
+    std::int64_t next = 0;
+    std::int64_t left = 0;
+
+    /* Where something begins whose length is `at` a position. */
+    ROSETTA_JIT_INLINE std::int64_t opened(std::int64_t at) noexcept
+    {
+        if (ROSETTA_JIT_UNLIKELY(known != nullptr)) {
+            std::int64_t size;
+            std::memcpy(&size, known + next++ * 8, sizeof size);
+            return at + varint_size(static_cast<std::uint64_t>(size));
+        }
+        left += 128;
+        return at + 1;
+    }
+
+    /* Where it ends; -1 where no byte is left. */
+    ROSETTA_JIT_INLINE std::int64_t closed(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t begin, std::int64_t behind) noexcept
+    {
+        if (behind - begin < 128) {
+            bytes[at] = static_cast<unsigned char>(behind - begin);
+            return behind;
+        }
+        return closed_long(bytes, end, at, begin, behind);
+    }
+
+    ROSETTA_JIT_APART std::int64_t closed_long(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t begin, std::int64_t behind) noexcept
+    {
+        const std::int64_t size = behind - begin, by = at + varint_size(static_cast<std::uint64_t>(size)) - begin;
+        if (by > 0) {
+            left -= size;
+            if (by > end - behind || left < 0) {
+                return -1;
+            }
+            std::memmove(bytes + begin + by, bytes + begin, static_cast<std::size_t>(size));
+        }
+        write_varint_exactly(bytes + at, static_cast<std::uint64_t>(size));
+        return behind + by;
+    }
+};
 
 /* The same of a number below 1 << 14, where there is room for two bytes. */
 inline std::int64_t write_varint_of_two(unsigned char *target, std::uint64_t number) noexcept
@@ -1291,7 +1339,19 @@ template <class Container> std::int64_t count_of(const Container &from)
     return static_cast<std::int64_t>(std::size(from));
 }
 
-template <class Container> void resize_to(Container &target, std::int64_t count)
+/* The same of a list of messages or texts, which has another number of them. */
+template <class Container> ROSETTA_JIT_APART void resize_elements(Container &target, std::int64_t count)
+{
+    target.Reserve(static_cast<int>(count));
+    while (target.size() < count) {
+        target.Add();
+    }
+    while (target.size() > count) {
+        target.RemoveLast();
+    }
+}
+
+template <class Container> ROSETTA_JIT_INLINE void resize_to(Container &target, std::int64_t count)
 {
     if constexpr (is_repeated<Container>::value) {
         if constexpr (std::is_arithmetic_v<typename Container::value_type>) {
@@ -1302,15 +1362,8 @@ template <class Container> void resize_to(Container &target, std::int64_t count)
             } else {
                 target.Truncate(static_cast<int>(count));
             }
-        } else if (target.size() < count) {
-            target.Reserve(static_cast<int>(count));
-            while (target.size() < count) {
-                target.Add();
-            }
-        } else {
-            while (target.size() > count) {
-                target.RemoveLast();
-            }
+        } else if (target.size() != count) {
+            resize_elements(target, count);
         }
     } else if constexpr (can_resize<Container>::value) {
         target.resize(static_cast<std::size_t>(count));
@@ -2111,17 +2164,19 @@ template <class Message, class Lane, class Span> ROSETTA_JIT_INLINE void keep_un
 }
 
 /* Takes the bytes of the unknown fields that a message has. */
-template <class Lane, class Span, class Message> ROSETTA_JIT_COLD void take_unknown_fields(Lane &to, Span &span, const Message &message)
+template <class Span, class Lane, class Message> ROSETTA_JIT_COLD Span taken_unknown_fields(Lane &to, const Message &message)
 {
+    Span span = {};
     std::string unknown;
     unknown_fields(message).SerializeToString(&unknown);
     take_span(to, span, unknown);
+    return span;
 }
 
 template <class Lane, class Span, class Message> ROSETTA_JIT_INLINE void take_unknown(Lane &to, Span &span, const Message &message)
 {
     if (has_unknown_fields(message)) {
-        take_unknown_fields(to, span, message);
+        span = taken_unknown_fields<Span>(to, message);
     }
 }
 
