@@ -41,9 +41,12 @@ from rosetta_jit.kernel.rewrite import substituted, with_blocks, with_expression
 from rosetta_jit.kernel.terms import END, add, index, split
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Layout
-from rosetta_jit.startup.dataclass import dataclass, field
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 AT, ROW, DEPTH = Local("i64", "begin_of_message"), Local("i64", "row"), Local("i64", "depth")
+DEEPEST = 1_000
+"""Messages within each other: each takes some hundred bytes of the stack, of which threads may have little."""
+
 OPENED, CLOSED = "opened\0", "closed\0"
 """Calls of no routine: what has a length begins behind the bytes that are left for it, and ends, which may move what was written."""
 
@@ -54,26 +57,30 @@ def visited_in_turn(kernel: Kernel, layout: Layout) -> Descents:
     Where a message may lack what it must have, it stays: kernels find the last such row first.
     """
     (body,) = kernel.bodies
-    if not layout.recursive or any(kernel.sites[number].kind == "missing" for number in _sites(body)):
-        raise NotNested
+    failures = {kernel.sites[each.site].kind: each for each in _failures(body)}
     writes = kernel.direction == "encode"
+    too_deep = failures.get("length" if writes else "nesting")  # who cannot write measures, which says what is wrong
+    if not layout.recursive or "missing" in failures or too_deep is None:
+        raise NotNested
     own, rows = without_work_list(body, layout) if writes else measured_rows(body, layout)
     if not rows:
         raise NotNested
     lengths = _lengths(body, len(layout.lanes))
-    found = Descents(AT, ROW, DEPTH, (AT,) if writes else (), lengths=None if writes else lengths)
+    found = Descents(AT, ROW, DEPTH, (AT, DEPTH) if writes else (DEPTH,), lengths=None if writes else lengths)
+    shallow = Expect(Compare("le", DEPTH, index(DEEPEST)), replace(too_deep, at=AT, indices=()) if writes else too_deep)
     messages = _Written(layout, found.visits, lengths) if writes else _Measured(layout, found.visits, lengths)
     found.body = undamaged((*(() if writes else (Var(lengths.name, index(0)),)), *messages.block(own)), kernel.sites, OWN_ROWS)
     for lane, row in rows.items():
         if not isinstance(row.row, Local):
             raise NotNested
+        messages.inside = add(DEPTH, 1)
         block = _with_values((*row.block, Return(row.end)), {row.row.name: index(0), row.begin: AT})
-        found.rows[lane] = undamaged(messages.block(block), kernel.sites, OWN_ROWS)
+        found.rows[lane] = (shallow, *undamaged(messages.block(block), kernel.sites, OWN_ROWS))
     return found
 
 
-def _sites(body: Block) -> set[int]:
-    return {stmt.failure.site for stmt, _ in statements(body) if isinstance(stmt, Expect)}
+def _failures(body: Block) -> list[Failure]:
+    return [stmt.failure for stmt, _ in statements(body) if isinstance(stmt, Expect)]
 
 
 def _lengths(body: Block, scratch: int) -> Local:
@@ -102,6 +109,7 @@ class _Measured:
     layout: Layout
     visits: dict[str, Visit]
     lengths: Local
+    inside: Expr = index(1)
 
     def block(self, block: Block) -> Block:
         return tuple(each for stmt in block for each in self._stmts(stmt))
@@ -121,7 +129,7 @@ class _Measured:
         """The size of a message. It has a number before those of lengths in the message itself."""
         number, scratch = Local("i64", f"number\0{size.name}"), len(self.layout.lanes)
         counted = Let(number.name, self.lengths), Reserve(scratch, add(number, 1)), Assign(self.lengths.name, add(number, 1))
-        return *counted, _visit(self.visits, place, size, self.lengths), SetField(Place(scratch, number), size)
+        return *counted, _visit(self.visits, place, size, (self.inside, self.lengths)), SetField(Place(scratch, number), size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +152,7 @@ class _Written:
     layout: Layout
     visits: dict[str, Visit]
     lengths: Local
+    inside: Expr = index(1)
     rows: dict[tuple[int, Expr], str] = field(default_factory=dict[tuple[int, Expr], str])
     sizes: set[str] = field(default_factory=set[str])
     opened: dict[str, _Opened] = field(default_factory=dict[str, _Opened])
@@ -182,7 +191,7 @@ class _Written:
     def _message(self, place: Place, begin: Expr) -> Block:
         """A message, whose size is known then; the end of a group has none before it."""
         size, behind = self.rows[place.lane, place.row], Local("i64", f"behind\0{len(self.visits)}")
-        visit = _visit(self.visits, place, behind, begin)
+        visit = _visit(self.visits, place, behind, (begin, self.inside))
         if size not in self.opened:
             self.ends[size] = behind
             return (visit,)
@@ -210,7 +219,7 @@ class _Written:
         return (closed, Expect(Compare("ge", end, index(0)), opened.failure)), end
 
 
-def _visit(visits: dict[str, Visit], place: Place, result: Local, argument: Expr) -> Call:
+def _visit(visits: dict[str, Visit], place: Place, result: Local, arguments: tuple[Expr, ...]) -> Call:
     match place.row:
         case Binary("add", Local() as start, number):
             pass
@@ -220,4 +229,4 @@ def _visit(visits: dict[str, Visit], place: Place, result: Local, argument: Expr
             raise NotNested
     name = f"message\0{len(visits)}"
     visits[name] = Visit(place.lane, start, index(1), None, None, index(0), number)
-    return Call(name, (argument,), (result,), ())
+    return Call(name, arguments, (result,), ())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import subprocess
 from typing import TYPE_CHECKING
 
 import pytest
@@ -36,6 +37,37 @@ message M { int32 value = 1; repeated int64 many = 2; Note note = 3; repeated M 
 """
 """One field alone contains its type: the rows of its lane are the list of rows that are written."""
 UNKNOWN = b"\xa0\x06\xac\x02"
+DEEPER = """#include "unit.hpp"
+#include <cstdio>
+static std::string said(int depth, bool in_lists)
+{
+    unit::codec codec;
+    unit::holder holder;
+    auto *at = &holder;
+    for (int number = 0; number < depth; number++) {
+        if (in_lists) {
+            at->kids.emplace_back();
+            at = &at->kids.back();
+        } else {
+            at->last = std::make_unique<unit::M>();
+            at = at->last.get();
+        }
+    }
+    std::string bytes;
+    const auto size = codec.try_size(holder);
+    const auto written = codec.try_encode(holder, bytes);
+    if (!size || !written) {
+        return !size && !written && size.error().what() == written.error().what() ? size.error().what() : "other errors";
+    }
+    return *size == bytes.size() ? "written" : "another size";
+}
+int main()
+{
+    for (const int depth : {1, 1000, 1001, 30000}) {
+        std::printf("%s\\n%s\\n", said(depth, false).c_str(), said(depth, true).c_str());
+    }
+}
+"""
 
 
 def varint(value: int) -> bytes:
@@ -145,6 +177,16 @@ def test_classes_of_protoc(name, tmp_path):
     native.protoc(tmp_path, "t", SCHEMAS[name][0])
     unit = written(tmp_path, name, Wishes(holder="protobuf", include="t.pb.h"))
     compare(name, native.program_of_protoc(tmp_path, unit, "t", WATCHED))
+
+
+@cpp.needs_cpp
+def test_an_object_that_is_too_deep(tmp_path):
+    """The stack has room for what is written by functions that call each other."""
+    (tmp_path / "deeper.cpp").write_text(DEEPER)
+    made = cpp.program(tmp_path, written(tmp_path, "one", Wishes()), options=QUICK, main=tmp_path / "deeper.cpp")
+    found = subprocess.run([made], check=True, capture_output=True, text=True).stdout
+    refused = "nesting: a message contains itself, or too many within each other"
+    assert found.splitlines() == [*["written"] * 4, *[refused] * 4]
 
 
 def options_of(name):

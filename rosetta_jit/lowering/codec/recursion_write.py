@@ -158,7 +158,9 @@ def _visit_field(writer: Writer, fields: HolderFields, entry: Entry, rows: Rows)
 
 
 def _append(writer: Writer, rows: Rows, lane: int, row: nodes.Expr) -> None:
-    writer.expect(nodes.Compare("lt", rows.number, rows.most), "nesting", Where(), "a message contains itself")
+    writer.expect(
+        nodes.Compare("lt", rows.number, rows.most), "nesting", Where(), "a message contains itself, or too many within each other"
+    )
     place = writer.let("place", add(mul(rows.number, rows.words), HEADER))
     words = (index(lane), row)[-rows.words :]
     writer.emit(
