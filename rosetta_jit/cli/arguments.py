@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol, cast
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, Protocol, cast
 
 from rosetta_jit.pipeline.request import plain_parameters
 
@@ -120,7 +121,24 @@ def options_of(arguments: Namespace) -> Options:
     """What the user said of a program: encoding, parameters and wire, and the files that declare a type."""
     options: Options = {"encoding": encoding_of(arguments), "parameters": parameters_of(arguments), "wire": wire_of(arguments)}
     imports = cast("list[str]", getattr(arguments, "imports", []))
-    return {**options, "imports": imports} if imports else options
+    if not imports:
+        return options
+    if is_mapping(arguments.mapping):
+        refuse_imports()
+    return {**options, "imports": imports}
+
+
+def is_mapping(name: str) -> bool:
+    """Whether a name is that of a mapping and not of a type: names of mappings end with `.mapping`, and files are mappings."""
+    return name.endswith(".mapping") or Path(name).is_file()
+
+
+def refuse_imports() -> NoReturn:
+    """Say that a mapping names the files itself that declare its types."""
+    from rosetta_jit.catalogue.generate import needless_import
+    from rosetta_jit.errors import SchemaError
+
+    raise SchemaError((needless_import(),))
 
 
 def encoding_of(arguments: Namespace) -> str | None:

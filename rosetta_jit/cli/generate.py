@@ -18,6 +18,7 @@ from rosetta_jit.cli.arguments import (
     add_wire,
     encoding_of,
     parameters_of,
+    refuse_imports,
     wire_of,
 )
 from rosetta_jit.file_errors import folder, named, whole
@@ -94,11 +95,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check(arguments: argparse.Namespace) -> None:
     """Refuse options that what is made knows nothing of, rather than to leave them out in silence."""
-    from rosetta_jit.catalogue.generate import needless, needless_import
+    from rosetta_jit.catalogue.generate import needless
     from rosetta_jit.errors import SchemaError
 
     if arguments.imports and _is_mapping(cast("str", arguments.subject)):
-        raise SchemaError((needless_import(),))
+        refuse_imports()
     of_source = {"--holder": arguments.holder, "--include": arguments.include, "--arrays": arguments.arrays == "numpy"}
     meaningless = of_source if arguments.emit == "object" else {"--target": arguments.target, "--cpu": arguments.cpu}
     if wrong := tuple(needless(option, arguments.emit) for option, value in meaningless.items() if value):

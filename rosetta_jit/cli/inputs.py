@@ -7,9 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.catalogue.generate import needless_import
-from rosetta_jit.cli.arguments import options_of
-from rosetta_jit.errors import SchemaError
+from rosetta_jit.cli.arguments import is_mapping, options_of
 from rosetta_jit.recording import Message, is_recording, read_messages
 
 if TYPE_CHECKING:
@@ -97,10 +95,6 @@ def _opened(file: str) -> Log | Message | None:
 
 
 def program_of(program: Any, arguments: argparse.Namespace, **options: Any) -> Any:
-    """A decoder or an encoder of the mapping, or of the type, that the user names: names of mappings end with `.mapping`."""
+    """A decoder or an encoder of the mapping, or of the type, that the user names."""
     named = arguments.mapping
-    if named.endswith(".mapping") or Path(named).is_file():
-        if "imports" in options:
-            raise SchemaError((needless_import(),))
-        return program(named, **options)
-    return program.of(named, **options)
+    return program(named, **options) if is_mapping(named) else program.of(named, **options)
