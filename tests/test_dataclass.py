@@ -160,8 +160,8 @@ def test_standard_ones_may_inherit_ours():
     assert Derived(1.0).more == 1
 
 
-TEMPLATE = PACKAGE / "generate" / "python" / "runtime" / "usual.py"
-"""What generated modules begin with, which need the standard library alone."""
+TEMPLATE = PACKAGE / "generate" / "python" / "runtime" / "printed.py"
+"""What generated modules import, which need the standard library alone."""
 
 
 def test_every_module_takes_it():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.catalogue import generate as words
@@ -21,6 +20,7 @@ from rosetta_jit.generate.python.printing.classes import WORDS, classes, names_o
 from rosetta_jit.generate.python.printing.functions import Attempt, beside_lanes, is_flat, print_kernel
 from rosetta_jit.generate.python.printing.printed import Objects
 from rosetta_jit.generate.python.printing.scope import CODES, TRUTH, Scope, view_name
+from rosetta_jit.generate.python.support import needed, support
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel
@@ -32,20 +32,8 @@ from rosetta_jit.startup.dataclass import replace
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""
 
-RUNTIME = Path(__file__).with_name("runtime")
-MORE = {
-    "_varint(": ("varints.py", "_SHORT"),
-    "_ByCount(": ("by_count.py", "_KEPT"),
-    "_fitting(": ("integers.py", "def "),
-    "_several_bytes(": ("long_varints.py", "def "),
-    "_long_length(": ("long_lengths.py", "def "),
-    "_joined(": ("long_parts.py", "_LONG"),
-    "_set_class(": ("late_lists.py", "_set_class"),
-}
-"""What modules have besides that name such functions: a file of the runtime, from where its text begins."""
 BY_COUNT = {"reads": "unpack_from", "writes": "pack"}
 """The methods of the struct module that read, and write, as many numbers as a message says."""
-OF_DECIMALS = ("_nearest(", "_shortest(", "_fixed_digits(")
 NO_MEMORY = "the message asks for more memory than its size allows"
 
 
@@ -73,33 +61,13 @@ class _Module:
         parts += [self._decoder_of(wire, role) for wire, role in wires_of(self.unit).items()]
         parts += [self._encoder()] if "encode" in self.unit.kernels else []
         parts += [self._reset()] if self.unit.state else []
-        constants, runtime = self._constants(), (RUNTIME / "usual.py").read_text("utf-8")
-        runtime = runtime[runtime.index("import math") :].rstrip()
-        if any(function in part for function in OF_DECIMALS for part in parts):
-            decimals = (RUNTIME / "decimals.py").read_text("utf-8")
-            runtime += f"\n\n\n{decimals[decimals.index('def ') :].rstrip()}"
-        for use, (file, begin) in MORE.items():
-            if any(use in part for part in (*parts, constants)):
-                more = (RUNTIME / file).read_text("utf-8")
-                if "BytesIO" in more:
-                    runtime = runtime.replace("from itertools", "from io import BytesIO\nfrom itertools", 1)
-                if "_dataclasses" in more:
-                    imports = "import dataclasses as _dataclasses\nimport math\nimport threading as _threading"
-                    runtime = runtime.replace("import math", imports, 1)
-                runtime += "\n\n\n" + re.sub(r"  # pyright: ignore\[.*\]", "", more[more.index(begin) :].rstrip())
-        if self.unit.numpy:
-            arrays = (RUNTIME / "arrays.py").read_text("utf-8")
-            runtime = runtime.replace(
-                "from typing import Any\n", "from typing import Any\n\nimport numpy as np\nimport numpy.typing as npt\n"
-            )
-            runtime += f"\n\n\n{arrays[arrays.index('_Array') :].rstrip()}"
-        declared = classes(self.unit).rstrip()
-        if "_builtins." in declared:
-            runtime = runtime.replace("import ", "import builtins as _builtins\nimport ", 1)
         made = "\n".join(
             f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
         )
-        text = "\n\n\n".join([f"{made}\nfrom __future__ import annotations\n\n{runtime}", declared, constants, *parts])
+        declared, functions = classes(self.unit).rstrip(), "\n\n\n".join(parts)
+        constants = needed(self._constants(), f"{declared}\n{functions}")
+        printed = f"{declared}\n\n\n{constants}\n\n\n{functions}"
+        text = f"{made}\nfrom __future__ import annotations\n\n{support(printed)}\n\n{printed}"
         return re.sub(r"\n{4,}", "\n\n\n", text).rstrip() + "\n"
 
     def _constants(self) -> str:
@@ -127,7 +95,10 @@ class _Module:
         lines += self.late.lines
         if self.unit.state:
             words = "".join(f"    {word},  # {name}\n" for name, word in self.unit.state)
-            lines += ["# What is kept from one message to the next: integers as they are, floats by their bits.", f"_INITIAL = (\n{words})"]
+            lines += [
+                f"_INITIAL = (\n{words})",
+                '"""What is kept from one message to the next: integers as they are, floats by their bits."""',
+            ]
             lines += [f"{each} = list(_INITIAL)" for each in REGISTERS.values()]
         if wires_of(self.unit):
             lines.append(rows_at_first(self.unit, self.lanes([each.stride for each in self.unit.layout.lanes])))

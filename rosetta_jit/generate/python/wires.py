@@ -36,7 +36,7 @@ def rows_at_first(unit: Unit, lanes: Lanes) -> str:
     """The rows that stay, by the names of their lanes."""
     _, *others = staying(unit)
     words = ", ".join([f'"message": bytes({lanes.stride(0)})', *(f'"{lanes.rows(lane)}": b""' for lane in others)])
-    return f"# What messages of several wires have filled.\n_ROWS_AT_FIRST = {{{words}}}\n_rows: dict[str, Any] = dict(_ROWS_AT_FIRST)"
+    return f'_ROWS_AT_FIRST = {{{words}}}\n_rows: dict[str, Any] = dict(_ROWS_AT_FIRST)\n"""What messages of several wires have filled."""'
 
 
 def filling(make: Make, kernel: Kernel, ways: Ways) -> list[str]:

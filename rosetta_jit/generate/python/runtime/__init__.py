@@ -1,1 +1,1 @@
-"""What generated modules begin with, and what some have besides, as text: each file is printed from its first statement on."""
+"""What generated modules need besides what is printed: `support` takes the definitions that a module names from these files, as text."""

@@ -1,6 +1,8 @@
-"""What generated modules have besides `usual` where arrays of numbers are numpy's."""
+"""Arrays of numbers that are numpy's."""
 
-# pyright: reportUnusedImport=false, reportUnusedFunction=false, reportUnusedClass=false, reportUnknownArgumentType=false
+# pyright: reportUnusedFunction=false, reportUnusedClass=false, reportUnknownArgumentType=false
+
+from __future__ import annotations
 
 from array import array
 from typing import Any
@@ -8,7 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_Array, _numbers_in, _numbers_of = np.ndarray, np.frombuffer, np.array
+_Array = np.ndarray
+_numbers_in = np.frombuffer
+_numbers_of = np.array
 _PLAIN = frozenset(map(np.dtype, "?bBhHiIlLqQfd"))
 """The types of arrays of numbers as this machine has them."""
 
@@ -51,14 +55,14 @@ def _few(numbers: Any) -> Any:
     return numbers.tolist() if numbers.dtype in _PLAIN or numbers.dtype.kind not in "mM" else numbers
 
 
-def _integers(dtype: "np.dtype[Any]", numbers: Any) -> Any:
+def _integers(dtype: np.dtype[Any], numbers: Any) -> Any:
     """The integers of an array as Python's; raises `ValueError` where they are none that the field can have."""
     if type(numbers) is not _Array:
         return array(dtype.char, numbers).tolist()
     return numbers.tolist() if numbers.dtype is dtype and numbers.ndim == 1 else np.frombuffer(_raw(dtype, numbers), dtype).tolist()
 
 
-def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:
+def _raw(dtype: np.dtype[Any], numbers: Any, is_bool: bool = False) -> bytes:
     """The bytes of numbers; raises `ValueError` where they are not of one dimension, or cannot be what the field has."""
     if type(numbers) is _Array and numbers.ndim == 1:
         if numbers.dtype is dtype:
@@ -80,7 +84,7 @@ def _raw(dtype: "np.dtype[Any]", numbers: Any, is_bool: bool = False) -> bytes:
     return converted.tobytes()
 
 
-def _table(dtype: "np.dtype[Any]", rows: Any, shape: tuple[int, ...], is_bool: bool = False) -> bytes | None:
+def _table(dtype: np.dtype[Any], rows: Any, shape: tuple[int, ...], is_bool: bool = False) -> bytes | None:
     """The bytes of arrays in arrays, of a shape; nothing where they have another one, or numbers of another type."""
     try:
         found: npt.NDArray[Any] = np.asarray(rows if isinstance(rows, list | _Array) else [*rows])

@@ -1,10 +1,13 @@
-"""What generated modules have besides `runtime` that read or write decimal numbers in texts."""
+"""Decimal numbers in texts."""
+
 # pyright: reportUnusedFunction=false, reportPrivateUsage=false
+
+from __future__ import annotations
 
 import math
 from typing import Any
 
-from rosetta_jit.generate.python.runtime.usual import _single
+from rosetta_jit.generate.python.runtime.numbers import _single
 
 
 def _nearest(text: Any, exponent: int) -> float:

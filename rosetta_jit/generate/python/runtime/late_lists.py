@@ -1,4 +1,8 @@
-"""Objects of types with many lists and maps, of which some have not come: part of generated modules that have such types."""
+"""Objects of types with many lists and maps, of which some have not come."""
+
+# pyright: reportUnusedClass=false
+
+from __future__ import annotations
 
 import dataclasses as _dataclasses
 import threading as _threading
@@ -38,7 +42,7 @@ class _WithoutLists:
         return _with_lists(self).__reduce_ex__(protocol)
 
 
-class _ByLists(dict[int, Any]):  # pyright: ignore[reportUnusedClass]
+class _ByLists(dict[int, Any]):
     """The classes of objects of a ``usual`` class by the groups of lists, of a ``size`` each, that they lack; all have the same names.
 
     ``groups`` are these, by the names of their lists: a bit, and what sets each list with what makes it.

@@ -1,4 +1,6 @@
-"""Messages within others that may be long, for generated modules that write some: part of those."""
+"""Messages that may be long, within others."""
+
+# pyright: reportUnusedFunction=false
 
 from __future__ import annotations
 
@@ -6,7 +8,8 @@ from collections.abc import Callable
 from io import BytesIO
 from typing import Any
 
-_LONG, _LONG_TEXT = 65536, 40960
+_LONG = 65536
+_LONG_TEXT = 40960
 
 
 class _Long:
@@ -33,17 +36,17 @@ class _LongText:
         return len(self.text)
 
 
-def _utf8(text: str) -> Any:  # pyright: ignore[reportUnusedFunction]
+def _utf8(text: str) -> Any:
     """A text as UTF-8."""
     return _LongText(text) if len(text) >= _LONG_TEXT and text.isascii() else text.encode()
 
 
-def _long(part: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
+def _long(part: Any) -> Any:
     """Bytes that a message within another has."""
     return part if len(part) < _LONG else _Long((part,), len(part))
 
 
-def _joined(parts: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
+def _joined(parts: Any) -> Any:
     """A message that another contains: its bytes, or if these are many their parts."""
     try:
         found = b"".join(parts)
@@ -52,7 +55,7 @@ def _joined(parts: Any) -> Any:  # pyright: ignore[reportUnusedFunction]
     return found if len(found) < _LONG else _Long((found,), len(found))
 
 
-def _whole(parts: Any) -> bytes:  # pyright: ignore[reportUnusedFunction]
+def _whole(parts: Any) -> bytes:
     """The bytes of a message."""
     try:
         return b"".join(parts)

@@ -1,0 +1,64 @@
+"""Lists of numbers, which the struct module and arrays pack."""
+
+# pyright: reportUnusedFunction=false, reportUnusedClass=false, reportUnknownArgumentType=false
+
+from __future__ import annotations
+
+from array import array
+from struct import Struct
+from struct import pack as _pack
+from typing import Any
+
+_q = "l" if Struct("l").size == 8 else "q"
+_Q = _q.upper()
+"""Integers of 64 bits for the struct module, which packs those of C's type long in less time where they have as many."""
+
+
+def _packed(code: str, numbers: Any) -> bytes:
+    """The bytes of numbers as they lie in memory."""
+    if isinstance(numbers, array) and numbers.typecode == code:
+        return numbers.tobytes()
+    return _pack(f"={len(numbers)}{code}", *numbers)
+
+
+def _turned(part: Any, code: str) -> bytes:
+    """Numbers with the order of their bytes turned around."""
+    numbers: array[Any] = array(code)
+    numbers.frombytes(part)
+    numbers.byteswap()
+    return numbers.tobytes()
+
+
+def _many(part: Any, code: str) -> list[Any]:
+    """The numbers that lie in a message."""
+    return array(code, part).tolist()
+
+
+def _many_turned(part: Any, code: str) -> list[Any]:
+    """The same where the high byte of each comes first."""
+    numbers = array(code, part)
+    numbers.byteswap()
+    return numbers.tolist()
+
+
+def _fitting(code: str, numbers: Any) -> Any:
+    """Integers that all fit their field, of which the struct module has the code."""
+    _pack(f"={len(numbers)}{code}", *numbers)
+    return numbers
+
+
+_KEPT = 128
+
+
+class _ByCount(dict[int, Any]):
+    """What reads or writes so many numbers of one type by one call, by their count: the struct module makes it where it is not kept."""
+
+    def __init__(self, code: str, method: str) -> None:
+        super().__init__()
+        self.code, self.method = code, method
+
+    def __missing__(self, count: int) -> Any:
+        if len(self) >= _KEPT:
+            self.clear()
+        found = self[count] = getattr(Struct(self.code.format(count)), self.method)
+        return found
