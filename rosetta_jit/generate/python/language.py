@@ -20,7 +20,7 @@ from rosetta_jit.generate.python.printing.classes import WORDS, classes, names_o
 from rosetta_jit.generate.python.printing.functions import Attempt, beside_lanes, is_flat, print_kernel
 from rosetta_jit.generate.python.printing.printed import Objects
 from rosetta_jit.generate.python.printing.scope import CODES, TRUTH, Scope, view_name
-from rosetta_jit.generate.python.support import needed, support
+from rosetta_jit.generate.python.support import mentioned, needed, support
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.unit import Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel
@@ -64,10 +64,11 @@ class _Module:
         made = "\n".join(
             f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
         )
-        declared, functions = classes(self.unit).rstrip(), "\n\n\n".join(parts)
-        constants = needed(self._constants(), f"{declared}\n{functions}")
-        printed = f"{declared}\n\n\n{constants}\n\n\n{functions}"
-        text = f"{made}\nfrom __future__ import annotations\n\n{support(printed)}\n\n{printed}"
+        printed, declared = "\n\n\n".join(parts), classes(self.unit).rstrip()
+        named = mentioned(f"{declared}\n{printed}")
+        constants = needed(self._constants(), named)
+        before = support(named | mentioned(constants))
+        text = f"{made}\nfrom __future__ import annotations\n\n{before}\n\n{declared}\n\n\n{constants}\n\n\n{printed}"
         return re.sub(r"\n{4,}", "\n\n\n", text).rstrip() + "\n"
 
     def _constants(self) -> str:

@@ -50,16 +50,21 @@ class Import:
         return self.module.partition(".")[0] != "numpy"
 
 
-def support(printed: str) -> str:
-    """What goes before the text of a module: imports, then definitions."""
+def mentioned(text: str) -> frozenset[str]:
+    """The names in the text of a module."""
+    return frozenset(each.id for each in ast.walk(ast.parse(text)) if isinstance(each, ast.Name))
+
+
+def support(named: Iterable[str]) -> str:
+    """What goes before the text of a module that names so much: imports, then definitions."""
     imports, definitions = _runtime()
-    taken, wanted = _taken(definitions, {*ALWAYS, *_mentioned(printed)})
+    taken, wanted = _taken(definitions, {*ALWAYS, *named})
     return _imports(each for each in imports if each.bound in wanted) + "\n" + _apart(taken)
 
 
-def needed(constants: str, printed: str) -> str:
-    """Those of the definitions in a text that other text names, or that these need."""
-    taken, _ = _taken([*_defined(constants, ast.parse(constants).body)], _mentioned(printed))
+def needed(constants: str, named: Iterable[str]) -> str:
+    """Those of the definitions in a text that have such names, or that these need."""
+    taken, _ = _taken([*_defined(constants, ast.parse(constants).body)], named)
     return _apart(taken)
 
 
@@ -73,11 +78,6 @@ def _taken(definitions: Sequence[Definition], named: Iterable[str]) -> tuple[lis
             wanted.add(name)
             pending += needs.get(name, ())
     return [each for each in definitions if not wanted.isdisjoint(each.names)], wanted
-
-
-def _mentioned(text: str) -> frozenset[str]:
-    """The names in the text of a module."""
-    return frozenset(each.id for each in ast.walk(ast.parse(text)) if isinstance(each, ast.Name))
 
 
 @cache
@@ -110,7 +110,7 @@ def _defined(text: str, statements: Sequence[ast.stmt]) -> Iterator[Definition]:
             is_large, is_documented = isinstance(statement, ast.FunctionDef | ast.ClassDef), isinstance(after, ast.Expr)
             last = after if after and is_documented else statement
             piece = "\n".join(IS_FOR_TOOLS.sub("", line) for line in lines[statement.lineno - 1 : last.end_lineno])
-            yield Definition(names, piece, _mentioned(piece), is_large, is_documented)
+            yield Definition(names, piece, mentioned(piece), is_large, is_documented)
 
 
 def _bound(statement: ast.stmt) -> tuple[str, ...]:
