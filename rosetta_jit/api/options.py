@@ -94,6 +94,16 @@ def _identified(functions: Mapping[str, Callable[..., Any]]) -> tuple[GivenFunct
     return tuple(GivenFunction(name, each, identify(each, name)) for name, each in sorted(functions.items()))
 
 
+def is_mapping(name: str) -> bool:
+    """Whether a name is that of a mapping and not of a type: names of mappings end with ``.mapping``, and files are mappings."""
+    return name.endswith(".mapping") or os.path.isfile(name)  # noqa: PTH113 - to import pathlib takes a tenth of a warm start
+
+
+def named_request(direction: Direction, name: str, options: Options) -> Request:
+    """The request for a program of a mapping or a type, as a user names it."""
+    return request_of(direction, options, mapping=name) if is_mapping(name) else type_request(direction, name, options)
+
+
 def type_request(direction: Direction, type_: str | type, options: Options) -> Request:
     """The request for a program of a type into its own holder; see `rosetta_jit.Decoder.of`."""
     request = request_of(direction, options, type_=type_ if isinstance(type_, str) else None)

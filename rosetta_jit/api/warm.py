@@ -6,15 +6,16 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
+from rosetta_jit.api.options import Options, is_mapping, named_request
 from rosetta_jit.api.programs import program_of
 from rosetta_jit.errors import ReportError
-from rosetta_jit.pipeline.request import Direction, Request, plain_parameters
+from rosetta_jit.pipeline.request import Direction, Request
 from rosetta_jit.runtime.attributes.code import make_ready
 from rosetta_jit.runtime.decoder import complete
 from rosetta_jit.runtime.program import make_rest
@@ -55,20 +56,17 @@ def members(name: str) -> Iterable[str]:
 def programs_of(
     names: Iterable[str],
     directions: Sequence[Direction] = DIRECTIONS,
-    encoding: str | None = None,
-    parameters: Mapping[str, object] | None = None,
-    imports: Sequence[str] = (),
+    options: Options | None = None,
 ) -> tuple[Request, ...]:
     """The programs of some mappings, types, and folders of mappings, each once.
 
     A name that ends in ``.mapping``, or is a file's, is that of a mapping; any other one that is no folder's is that of a type, which
-    ``imports`` may declare.
+    the imports may declare.
     """
-    values = plain_parameters(parameters or {})
+    of_mapping: Options = {**(options or {}), "imports": ()}
+    of_type: Options = {**(options or {}), "parameters": {}}
     found = [
-        Request(direction, mapping=name, encoding=encoding, parameters=values)
-        if _is_mapping(name)
-        else Request(direction, type=name, encoding=encoding, imports=tuple(imports))
+        named_request(direction, name, of_mapping if is_mapping(name) else of_type)
         for each in names
         for name in members(each)
         for direction in directions
@@ -106,10 +104,6 @@ def warm(programs: Iterable[Request], jobs: int | None = None, *, usual: bool = 
 def _start_method() -> str:
     """How processes begin: as copies of this one, which has imported the compiler, where no other thread can hold a lock meanwhile."""
     return "fork" if sys.platform == "linux" and threading.active_count() == 1 else "spawn"
-
-
-def _is_mapping(name: str) -> bool:
-    return name.endswith(SUFFIX) or Path(name).is_file()
 
 
 def _made(request: Request, *, usual: bool) -> tuple[Warmed, ...]:

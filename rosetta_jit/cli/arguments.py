@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, Protocol, cast
 
 from rosetta_jit.pipeline.request import plain_parameters
@@ -55,6 +54,19 @@ def add_encoding(command: ArgumentParser) -> None:
     command.add_argument("--encoding", help="one of those that `rosetta-jit frameworks` lists (default: the mapping's own)")
 
 
+def add_dialect(command: ArgumentParser) -> None:
+    """In which form these bytes are, and what is forgiven."""
+    command.add_argument(
+        "--byte-order",
+        choices=("little", "big"),
+        help="of what is written, or of what is read where messages do not tell (default: little)",
+    )
+    lists = "rosetta-jit frameworks"
+    command.add_argument(
+        "--lenient", metavar="NAME", action="append", default=[], help=f"what to forgive, by a name that `{lists}` lists for the encoding"
+    )
+
+
 def add_imports(command: ArgumentParser) -> None:
     """The files that declare a type, where its name does not say which."""
     command.add_argument("--import", dest="imports", metavar="FILE", action="append", default=[], help="a file that declares the type")
@@ -75,6 +87,15 @@ def add_parameters(command: ArgumentParser) -> None:
         type=_parameter,
         help="a parameter of the mapping: --parameter scale=2.5",
     )
+
+
+def add_options(command: ArgumentParser) -> None:
+    """What a program is made with: `options_of` gives it."""
+    add_encoding(command)
+    add_dialect(command)
+    add_imports(command)
+    add_wire(command)
+    add_parameters(command)
 
 
 def positive(text: str) -> int:
@@ -117,20 +138,21 @@ def wire_of(arguments: Namespace) -> str | None:
     return arguments.wire or None
 
 
-def options_of(arguments: Namespace) -> Options:
-    """What the user said of a program: encoding, parameters and wire, and the files that declare a type."""
-    options: Options = {"encoding": encoding_of(arguments), "parameters": parameters_of(arguments), "wire": wire_of(arguments)}
-    imports = cast("list[str]", getattr(arguments, "imports", []))
-    if not imports:
-        return options
-    if is_mapping(arguments.mapping):
+def options_of(arguments: Namespace, subject: str = "") -> Options:
+    """What the user said of a program of a mapping or type."""
+    from rosetta_jit.api.options import is_mapping
+
+    imports = cast("list[str]", arguments.imports)
+    if imports and is_mapping(subject):
         refuse_imports()
-    return {**options, "imports": imports}
-
-
-def is_mapping(name: str) -> bool:
-    """Whether a name is that of a mapping and not of a type: names of mappings end with `.mapping`, and files are mappings."""
-    return name.endswith(".mapping") or Path(name).is_file()
+    options: Options = {
+        "encoding": encoding_of(arguments),
+        "byte_order": arguments.byte_order,
+        "lenient": cast("list[str]", arguments.lenient),
+        "parameters": parameters_of(arguments),
+        "wire": wire_of(arguments),
+    }
+    return {**options, "imports": imports} if imports else options
 
 
 def refuse_imports() -> NoReturn:

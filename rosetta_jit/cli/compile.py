@@ -8,7 +8,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_imports, add_parameters, encoding_of, parameters_of, positive
+from rosetta_jit.cli.arguments import Commands, add_command, add_options, options_of, positive
 from rosetta_jit.pipeline.request import Direction
 from rosetta_jit.terminal import printable
 
@@ -28,9 +28,7 @@ def add(commands: Commands) -> None:
 def add_programs(command: argparse.ArgumentParser, *, nargs: str, of: str = "") -> None:
     """Declare which programs to compile; ``of`` begins the help of an action among others."""
     command.add_argument("names", metavar="MAPPING|TYPE|FOLDER", nargs=nargs, help=f"{of}mappings, types, and folders of mappings")
-    add_imports(command)
-    add_encoding(command)
-    add_parameters(command)
+    add_options(command)
     command.add_argument("--direction", choices=("decode", "encode"), action="append", help=f"{of}only this direction")
     usual = f"{of}leave out what is compiled when a message comes that hardly ever does, such as big-endian CDR"
     command.add_argument("--usual", action="store_true", help=usual)
@@ -46,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rosetta_jit.runtime.cache.kernels import Cache
 
     directions = cast("list[Direction] | None", arguments.direction) or DIRECTIONS
-    programs = programs_of(arguments.names, directions, encoding_of(arguments), parameters_of(arguments), arguments.imports)
+    programs = programs_of(arguments.names, directions, options_of(arguments))
     started, made, wrong = time.perf_counter(), 0, 0
     try:
         for number, several in enumerate(warm(programs, cast("int | None", arguments.jobs), usual=arguments.usual), 1):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command, add_encoding, add_imports, add_mapping_or_type, add_parameters, add_wire
+from rosetta_jit.cli.arguments import Commands, add_command, add_mapping_or_type, add_options
 from rosetta_jit.cli.inputs import add_topic, decoders_of
 from rosetta_jit.errors import DecodeError
 
@@ -22,10 +22,7 @@ def add(commands: Commands) -> None:
     add_mapping_or_type(command)
     command.add_argument("files", metavar="FILE", nargs="+", help="one message, a recording (.rec, .rec.xz) or a log; - is standard input")
     add_topic(command)
-    add_encoding(command)
-    add_imports(command)
-    add_wire(command)
-    add_parameters(command)
+    add_options(command)
     form = command.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help='one JSON object a message and line; bytes as {"base64": …}')
     form.add_argument("--npz", metavar="OUT", help="write the columns of all messages to a numpy archive")

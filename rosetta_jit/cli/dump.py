@@ -7,11 +7,8 @@ import argparse
 from rosetta_jit.cli.arguments import (
     Commands,
     add_command,
-    add_encoding,
-    add_imports,
     add_mapping_or_type,
-    add_parameters,
-    add_wire,
+    add_options,
     options_of,
 )
 from rosetta_jit.cli.inputs import add_topic, channel_of, program_of
@@ -28,10 +25,7 @@ def add(commands: Commands) -> None:
     add_topic(command)
     command.add_argument("--stage", choices=[stage.name for stage in STAGES], default="kernel", help="default: kernel")
     command.add_argument("--direction", choices=("decode", "encode"), default="decode", help="default: decode")
-    add_encoding(command)
-    add_imports(command)
-    add_wire(command)
-    add_parameters(command)
+    add_options(command)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -43,6 +37,6 @@ def run(arguments: argparse.Namespace) -> int:
         with rosetta_jit.open(arguments.log) as log:
             made = channel_of(log, arguments).program(program)
     else:
-        made = program_of(program, arguments, **options_of(arguments))
+        made = program_of(program, arguments, **options_of(arguments, arguments.mapping))
     print(made.stage(arguments.stage))
     return 0

@@ -12,11 +12,8 @@ from rosetta_jit.catalogue import values as words
 from rosetta_jit.cli.arguments import (
     Commands,
     add_command,
-    add_encoding,
-    add_imports,
     add_mapping_or_type,
-    add_parameters,
-    add_wire,
+    add_options,
     options_of,
 )
 from rosetta_jit.cli.inputs import program_of
@@ -31,10 +28,7 @@ def add(commands: Commands) -> None:
     command = add_command(commands, "encode", "Encode values to messages.", run)
     add_mapping_or_type(command)
     command.add_argument("files", metavar="FILE.json", nargs="+", help="one JSON object, or one a line, as `decode --json` prints them")
-    add_encoding(command)
-    add_imports(command)
-    add_wire(command)
-    add_parameters(command)
+    add_options(command)
     command.add_argument(
         "-o", "--output", metavar="OUT", default="-", help="for one message any file, for several a recording (.rec, .rec.xz)"
     )
@@ -44,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     """All messages are encoded before anything is written."""
     import rosetta_jit
 
-    encode = program_of(rosetta_jit.Encoder, arguments, **options_of(arguments))
+    encode = program_of(rosetta_jit.Encoder, arguments, **options_of(arguments, arguments.mapping))
     holder = encode.holder_type
     values = [value for file in cast("list[str]", arguments.files) for value in _values(Path(file))]
     messages = [encode(holder.from_dict(value)) for value in values]

@@ -12,14 +12,8 @@ from typing import TYPE_CHECKING, cast
 from rosetta_jit.cli.arguments import (
     Commands,
     add_command,
-    add_encoding,
-    add_imports,
-    add_parameters,
-    add_wire,
-    encoding_of,
-    parameters_of,
-    refuse_imports,
-    wire_of,
+    add_options,
+    options_of,
 )
 from rosetta_jit.file_errors import folder, named, whole
 from rosetta_jit.pipeline.request import Request
@@ -63,10 +57,7 @@ def add(commands: Commands) -> None:
     command.add_argument("--cpu", default="", help="of an object: one of the machine's, as cortex-m7 (default: any)")
     command.add_argument("--freestanding", action="store_true", help="use nothing of a C library but memcpy and memset")
     command.add_argument("--framework", help="the type's, where its name does not tell")
-    add_imports(command)
-    add_encoding(command)
-    add_wire(command)
-    add_parameters(command)
+    add_options(command)
 
 
 def _directions(text: str) -> tuple[str, ...]:
@@ -98,8 +89,6 @@ def _check(arguments: argparse.Namespace) -> None:
     from rosetta_jit.catalogue.generate import needless
     from rosetta_jit.errors import SchemaError
 
-    if arguments.imports and _is_mapping(cast("str", arguments.subject)):
-        refuse_imports()
     of_source = {"--holder": arguments.holder, "--include": arguments.include, "--arrays": arguments.arrays == "numpy"}
     meaningless = of_source if arguments.emit == "object" else {"--target": arguments.target, "--cpu": arguments.cpu}
     if wrong := tuple(needless(option, arguments.emit) for option, value in meaningless.items() if value):
@@ -130,18 +119,11 @@ def _object(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:
 
 
 def _request(arguments: argparse.Namespace) -> Request:
-    from rosetta_jit.api.options import request_of, type_request
+    from rosetta_jit.api.options import named_request
 
-    options: Options = {"encoding": encoding_of(arguments), "framework": arguments.framework, "parameters": parameters_of(arguments)}
-    options["wire"] = wire_of(arguments)
     subject = cast("str", arguments.subject)
-    if _is_mapping(subject):
-        return request_of("decode", options, mapping=subject)
-    return type_request("decode", subject, options | {"imports": cast("list[str]", arguments.imports)})
-
-
-def _is_mapping(subject: str) -> bool:
-    return subject.endswith(".mapping")
+    options: Options = {**options_of(arguments, subject), "framework": arguments.framework}
+    return named_request("decode", subject, options)
 
 
 def _name(arguments: argparse.Namespace) -> str:

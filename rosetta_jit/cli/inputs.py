@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from rosetta_jit.cli.arguments import is_mapping, options_of
+from rosetta_jit.cli.arguments import options_of
 from rosetta_jit.recording import Message, is_recording, read_messages
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def _one_topic(log: Log, topic: str | None) -> str:
 
 def channel_of(log: Log, arguments: argparse.Namespace) -> Channel:
     """The messages of a topic, which the mapping or the type decodes that the user names: as the log defines it, in its encoding."""
-    options = {name: value for name, value in options_of(arguments).items() if value}
+    options = {name: value for name, value in options_of(arguments, arguments.mapping).items() if value}
     return log.channel(_one_topic(log, arguments.topic), arguments.mapping, **cast("Options", options))
 
 
@@ -70,7 +70,7 @@ def decoders_of(arguments: argparse.Namespace) -> Iterator[tuple[str, Any, Itera
         if found is not None and not isinstance(found, Message):
             yield file, channel_of(found, arguments).decoder, _of_topic(found, arguments.topic)
             continue
-        plain = plain or program_of(rosetta_jit.Decoder, arguments, **options_of(arguments))
+        plain = plain or program_of(rosetta_jit.Decoder, arguments, **options_of(arguments, arguments.mapping))
         yield file, plain, read_messages(Path(file)) if found is None else iter([found])
 
 
@@ -96,5 +96,7 @@ def _opened(file: str) -> Log | Message | None:
 
 def program_of(program: Any, arguments: argparse.Namespace, **options: Any) -> Any:
     """A decoder or an encoder of the mapping, or of the type, that the user names."""
+    from rosetta_jit.api.options import is_mapping
+
     named = arguments.mapping
     return program(named, **options) if is_mapping(named) else program.of(named, **options)

@@ -27,18 +27,17 @@ def add(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the stub."""
-    from rosetta_jit.api.options import request_of, type_request
+    from rosetta_jit.api.options import is_mapping, named_request
     from rosetta_jit.api.programs import holder_type_of, wires_of
     from rosetta_jit.stubs.module import stub
 
-    is_mapping = str(arguments.what).endswith(".mapping")
     options: Any = {"encoding": arguments.encoding, "framework": arguments.framework, "parameters": parameters_of(arguments)}
     options["imports"] = arguments.imports
     what = str(arguments.what)
-    request = request_of("decode", options, mapping=what) if is_mapping else type_request("decode", what, options)
+    request = named_request("decode", what, options)
     wires = wires_of(request)
     family = holder_type_of(replace(request, wire="") if wires else request).family_
-    text = stub(family, what, options, is_mapping=is_mapping, wires=_attributes(wires) if wires else None)
+    text = stub(family, what, options, is_mapping=is_mapping(what), wires=_attributes(wires) if wires else None)
     if arguments.output is None:
         sys.stdout.write(text)
     else:

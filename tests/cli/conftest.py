@@ -32,7 +32,7 @@ class StubHolder:
 
 
 class StubDecoder:
-    def __init__(self, mapping, *, encoding=None, parameters=None, wire=None):
+    def __init__(self, mapping, *, encoding=None, parameters=None, wire=None, **_):
         if mapping == "wrong.mapping":
             raise MappingError((MISTAKE,))
         self.parameters, self.wire = parameters, wire

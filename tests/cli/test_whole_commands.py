@@ -62,6 +62,22 @@ def test_values_of_a_type_that_a_file_declares(command, tmp_path):
     assert "needless-option" in command("decode", TORSO, "out.bin", "--import", "own.proto", expected=1).stderr
 
 
+def test_what_peers_do_otherwise_is_said_by_name(command, tmp_path):
+    """In all commands that make programs: byte orders, and what is forgiven."""
+    message = bytes([0, 0, 0, 0, 255])
+    (tmp_path / "values.json").write_text(json.dumps({"data": 258}))
+    (tmp_path / "bool.bin").write_bytes(message)
+    command("encode", "std_msgs/msg/Int32", "values.json", "--byte-order", "big", "-o", "big.bin")
+    assert (tmp_path / "big.bin").read_bytes() == struct.pack(">4xi", 258)
+    assert "constant" in command("decode", "std_msgs/msg/Bool", "bool.bin", expected=1).stderr
+    assert json.loads(command("decode", "std_msgs/msg/Bool", "bool.bin", "--lenient", "bool", "--json").stdout) == {"data": True}
+    assert "it can forgive bool" in command("dump", "std_msgs/msg/Bool", "--lenient", "foo", expected=1).stderr
+    command("cache", "warm", "std_msgs/msg/Bool", "--lenient", "bool", "--lenient", "trailing", "--byte-order", "big", "--jobs", "1")
+    command("generate", "std_msgs/msg/Int32", "--byte-order", "big", "--lenient", "trailing", "--language", "python", "--name", "number")
+    said = "import number; print(number.decode(bytes([0, 0, 0, 0, 0, 0, 1, 2, 9])).data)"
+    assert subprocess.run([sys.executable, "-c", said], cwd=tmp_path, capture_output=True, text=True, check=True).stdout == "258\n"
+
+
 def test_encoding_must_be_said_where_it_would_be_a_guess(command, tmp_path):
     (tmp_path / "values.json").write_text(json.dumps({"angles": [0.0, 0.0, 0.0]}))
     ran = command("encode", TORSO, "values.json", "-o", "out.bin", expected=1)

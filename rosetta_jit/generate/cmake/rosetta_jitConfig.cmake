@@ -1,8 +1,8 @@
 # find_package(rosetta_jit): the headers that generated C++ shares, and a function that generates sources.
 #
 #   rosetta_generate(TARGET SUBJECT [LANGUAGE c|cpp] [HOLDER own|protobuf|ros1|ros2|lcm|yarp|rsb] [ENCODING NAME] [NAME NAME]
-#                    [FRAMEWORK NAME] [INCLUDE HEADER] [DIRECTIONS decode|encode...] [PARAMETERS NAME=VALUE...] [IMPORTS FILE...]
-#                    [DEPENDS FILE...])
+#                    [FRAMEWORK NAME] [INCLUDE HEADER] [BYTE_ORDER little|big] [WIRE NAME] [DIRECTIONS decode|encode...]
+#                    [LENIENT NAME...] [PARAMETERS NAME=VALUE...] [IMPORTS FILE...] [DEPENDS FILE...])
 #
 # writes SUBJECT, a mapping (*.mapping) or a type, as source, and adds it to TARGET. Whoever links TARGET finds its header, `NAME.hpp` or
 # `NAME.h`. NAME is by default the name of the mapping's file; a type needs one, and IMPORTS, the files that declare it, where its name does
@@ -24,7 +24,8 @@ if(NOT TARGET rosetta_jit::headers)
 endif()
 
 function(rosetta_generate target subject)
-  cmake_parse_arguments(PARSE_ARGV 2 ARG "" "LANGUAGE;HOLDER;ENCODING;NAME;FRAMEWORK;INCLUDE" "DIRECTIONS;PARAMETERS;IMPORTS;DEPENDS")
+  cmake_parse_arguments(PARSE_ARGV 2 ARG "" "LANGUAGE;HOLDER;ENCODING;NAME;FRAMEWORK;INCLUDE;BYTE_ORDER;WIRE"
+                        "DIRECTIONS;LENIENT;PARAMETERS;IMPORTS;DEPENDS")
   if(ARG_UNPARSED_ARGUMENTS OR ARG_KEYWORDS_MISSING_VALUES)
     message(FATAL_ERROR "rosetta_generate: cannot use ${ARG_UNPARSED_ARGUMENTS}${ARG_KEYWORDS_MISSING_VALUES}")
   endif()
@@ -53,11 +54,15 @@ function(rosetta_generate target subject)
   list(JOIN ARG_DIRECTIONS "," directions)
 
   set(options --language ${ARG_LANGUAGE} --name ${ARG_NAME} --directions ${directions})
-  foreach(option HOLDER ENCODING FRAMEWORK INCLUDE)
+  foreach(option HOLDER ENCODING FRAMEWORK INCLUDE BYTE_ORDER WIRE)
     if(ARG_${option})
       string(TOLOWER ${option} flag)
+      string(REPLACE _ - flag ${flag})
       list(APPEND options --${flag} ${ARG_${option}})
     endif()
+  endforeach()
+  foreach(name IN LISTS ARG_LENIENT)
+    list(APPEND options --lenient ${name})
   endforeach()
   foreach(parameter IN LISTS ARG_PARAMETERS)
     list(APPEND options --parameter ${parameter})
