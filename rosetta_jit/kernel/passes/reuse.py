@@ -8,7 +8,7 @@ as they are.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from itertools import count
 
@@ -133,7 +133,7 @@ def _block(block: Block, known: _Known, names: _Names) -> Block:
 def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
     """A statement, behind names for what it is the first to read."""
     lets: list[Stmt] = []
-    named = _naming(known, names, lets)
+    named = _Naming(known, names, lets)
     changed: Stmt
     match stmt:
         case Let(name, Load() | Get() as read):
@@ -161,23 +161,29 @@ def _branch(block: Block, known: _Known, names: _Names) -> Block:
     return result
 
 
-def _naming(known: _Known, names: _Names, lets: list[Stmt]) -> Callable[[Expr], Expr]:
-    """Gives an expression with names in place of what it reads; what is read for the first time gets its name in ``lets``."""
+@dataclass(frozen=True, slots=True)
+class _Naming:
+    """Gives an expression with names in place of what it reads; what is read for the first time gets its name in ``lets``.
 
-    def named(expr: Expr) -> Expr:
+    A function in a function that calls itself would be garbage for each statement.
+    """
+
+    known: _Known
+    names: _Names
+    lets: list[Stmt]
+
+    def __call__(self, expr: Expr) -> Expr:
         if type(expr) in PLAIN:
             return expr
-        changed = with_operands(expr, named)
-        if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
+        changed = with_operands(expr, self)
+        if not isinstance(changed, Load | Get) or not self.names.variables.isdisjoint(locals_in(changed)):
             return changed
-        local = known.of(_source(changed)).get(changed)
+        local = self.known.of(_source(changed)).get(changed)
         if local is None:
-            local = Local(changed.type, names.fresh())
-            known.learn(_source(changed), changed, local)
-            lets.append(Let(local.name, changed))
+            local = Local(changed.type, self.names.fresh())
+            self.known.learn(_source(changed), changed, local)
+            self.lets.append(Let(local.name, changed))
         return local
-
-    return named
 
 
 def _source(read: Expr) -> int:
