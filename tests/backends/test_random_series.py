@@ -146,7 +146,6 @@ def bodies(monkeypatch):
 
     monkeypatch.setenv("ROSETTA_JIT_CACHE", "off")
     monkeypatch.setattr(alike, "MANY", 16)
-    monkeypatch.setattr(stretches, "MANY", 16)
     monkeypatch.setattr(stretches, "ROUNDS", 4)
     monkeypatch.setattr(alike, "SEVERAL", 16)
     monkeypatch.setattr(twins, "LEAST", 4)

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rosetta_jit.backends.llvm import alike_names
-from rosetta_jit.backends.llvm.alike import MANY, Cases, Found, Number, Series
+from rosetta_jit.backends.llvm.alike import Cases, Found, Number, Series
 from rosetta_jit.backends.llvm.alike_names import Carried
 from rosetta_jit.backends.llvm.outline import Outline, Slot, is_number
 from rosetta_jit.kernel.ir import Kernel
@@ -102,7 +102,7 @@ class _Look:
         return [self.outline(stmt) if times[kind] >= ROUNDS else None for stmt, kind in zip(block, kinds, strict=True)]
 
     def cases(self, switch: Switch) -> tuple[Cases, ...]:
-        """The cases of a switch that are alike, where they are many, or of very many statements.
+        """The cases of a switch that are alike, where they are many. Two or three large ones are a function (`twins`).
 
         Where they use other names of what is around them, as optional fields do that are noted in other words, each is printed, which takes
         half of the time to run: but for large kernels, which LLVM would take seconds for.
@@ -111,14 +111,13 @@ class _Look:
         kinds = [tuple(map(type, body)) for _, body in switch.cases]
         times = Counter(kinds)
         for (number, body), kind in zip(switch.cases, kinds, strict=True):
-            if times[kind] < ROUNDS and (times[kind] == 1 or not _is_vast(body)):
+            if times[kind] < ROUNDS:
                 continue
             outlines = list(map(self.outline, body))
             slots = joined(each.slots for each in outlines)
             around = _names_around(slots) if self.is_large else ()
             alike.setdefault((around, *[each.shape for each in outlines]), []).append((number, body, slots))
-        groups = [each for each in alike.values() if len(each) > 1 and len(each[0][1]) > 1]
-        made = [_case(group) for group in groups if len(group) >= ROUNDS or _is_vast(group[0][1])]
+        made = [_case(group) for group in alike.values() if len(group) >= ROUNDS and len(group[0][1]) > 1]
         return tuple(each for each in made if each is not None)
 
 
@@ -175,11 +174,6 @@ def _names_around(slots: Sequence[Slot]) -> tuple[str, ...]:
     """What a case uses that is bound around it: cases of one series use the same."""
     bound = {slot.name for slot in slots if slot.kind == "bound"}
     return tuple([slot.name for slot in slots if slot.is_use and slot.name not in bound])
-
-
-def _is_vast(body: Block) -> bool:
-    """Whether a case is worth a table where there is but one more like it: a message type that stands in others in several ways."""
-    return len(flat(body)) >= MANY
 
 
 def _case(group: Sequence[tuple[int, Block, list[Slot]]]) -> Cases | None:
