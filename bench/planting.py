@@ -24,7 +24,6 @@ from bench.compare import Change, changes, together
 from bench.report.markdown import table
 from bench.run import RunError, read
 from rosetta_jit.backends.llvm import function as llvm
-from rosetta_jit.backends.llvm.lines import Line
 from rosetta_jit.generate import build
 from rosetta_jit.runtime.code import assembler
 
@@ -88,7 +87,7 @@ def in_blocks(blocks: Iterable[ir.Block]) -> None:
     for block in blocks:
         if BODIES.fullmatch(block.name):
             behind = sum(" = phi " in str(each) for each in block.instructions)
-            block.instructions.insert(behind, Line(ir.VoidType(), "", LOOP))
+            block.instructions.insert(behind, LOOP)
 
 
 def in_functions(text: str, names: Container[str]) -> str:

@@ -25,6 +25,16 @@ for what, options in map(json.loads, sys.argv[2:]):
 """
 """After a first program, which pays for the compiler's import."""
 
+PEAK = """
+import json, sys
+from pathlib import Path
+import rosetta_jit as rj
+what, options = json.loads(sys.argv[2])
+{"decode": rj.Decoder, "encode": rj.Encoder}[sys.argv[1]].of(what, **options)
+print(next(int(line.split()[1]) for line in Path("/proc/self/status").read_text().splitlines() if line.startswith("VmHWM")) / 1024)
+"""
+"""The most memory that a process has had which has compiled a type and nothing else."""
+
 WARM = "import runpy, sys; sys.argv[0] = 'rosetta-jit'; runpy.run_module('rosetta_jit', run_name='__main__')"
 NONE = "import numpy, rosetta_jit as rj; rj.Decoder"
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1"}
@@ -140,10 +150,14 @@ def test_conformance_type(effort, record):
         pytest.skip("CONFORMANCE_PROTOS does not name the folder of protobuf's own test messages")
     name = "google/protobuf/test_messages_proto3.proto"
     options = {"encoding": "protobuf", "schema": {name: (Path(folder) / name).read_text("utf-8")}}
+    wanted, rounds = ("protobuf_test_messages.proto3.TestAllTypesProto3", options), range(1 if effort.quick else 3)
     for direction, does in (("decode", "decoder"), ("encode", "encoder")):
-        wanted = "protobuf_test_messages.proto3.TestAllTypesProto3", options
-        took = [compiled_s(direction, wanted)[0] for _ in range(1 if effort.quick else 3)]
+        took = [compiled_s(direction, wanted)[0] for _ in rounds]
         record(f"compile, protobuf's TestAllTypesProto3, {does}", Spread.of(took), None, "s", "aim 3 s")
+        if Path("/proc/self/status").exists():
+            held = [float(run("-c", PEAK, direction, json.dumps(wanted), ROSETTA_JIT_CACHE="off")) for _ in rounds]
+            said = "the whole process at its peak; aim 150 MiB"
+            record(f"memory of a process that compiles TestAllTypesProto3, {does}", Spread.of(held), None, "MiB", said)
 
 
 def test_fifty(record, tmp_path):

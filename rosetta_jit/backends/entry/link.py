@@ -26,6 +26,7 @@ from rosetta_jit.backends.entry.program import Options, Program
 from rosetta_jit.backends.entry.texts import next_text, rest_text, template, usual_text
 from rosetta_jit.backends.llvm import definitions, support
 from rosetta_jit.backends.llvm import function as llvm
+from rosetta_jit.backends.llvm.printing import taken_parts, taken_text
 from rosetta_jit.backends.llvm.routines import common_routine
 from rosetta_jit.kernel.entries import ANY_CALL, LATER, NEXT_CALL, REST, SYMBOLS, EntryName
 from rosetta_jit.kernel.ir import Kernel
@@ -57,8 +58,8 @@ def compile_program(kernels: Sequence[Kernel], entry: EntryName, **options: Unpa
     """
     if is_prelinking():
         program = Program(kernels, entry, options)
-        module, machine = _optimised(program, _own_parts(program, whole=False))
-        code = prelinked(machine.emit_object(module), *_surroundings(module, program), gives=program.exported)
+        images, declared = _own_images(program)
+        code = prelinked(*images, *_surroundings(declared, program), gives=program.exported)
         if code is not None:
             return code
     return object_file(kernels, entry, **options)
@@ -100,12 +101,41 @@ def _whole(kernels: Sequence[Kernel], entry: EntryName, options: Options) -> tup
     return _optimised(program, (*_own_parts(program, whole=True), *_surrounding_texts(program)))
 
 
+def _own_images(program: Program) -> tuple[list[bytes], set[str]]:
+    """The object files of a program's own modules, and the functions that they want others to define.
+
+    The modules of a vast program become code one after another, so that LLVM holds but one of them.
+    """
+    texts = list(_own_parts(program, whole=False))
+    if not program.is_vast:
+        module, machine = _optimised(program, texts)
+        return [machine.emit_object(module)], _declared(module)
+    images, declared, machine = list[bytes](), set[str](), _machine(program, texts)
+    while texts:
+        module = linked([texts.pop(0)])
+        _optimise(module, program, machine)
+        images.append(machine.emit_object(module))
+        declared |= _declared(module)
+        del module
+    return images, declared
+
+
+def _declared(module: binding.ModuleRef) -> set[str]:
+    return {each.name for each in module.functions if each.is_declaration}
+
+
 def _optimised(program: Program, parts: Iterable[str]) -> tuple[binding.ModuleRef, binding.TargetMachine]:
     """Parts of a program as one module, after LLVM's passes, and what makes code of it."""
     texts = tuple(parts)
-    module, machine = linked(texts), target_machine(hurried=program.would_take_long(sum(text.count("\n") for text in texts)))
+    module, machine = linked(texts), _machine(program, texts)
+    make_private(module, program.exported)
     _optimise(module, program, machine)
     return module, machine
+
+
+def _machine(program: Program, texts: Iterable[str]) -> binding.TargetMachine:
+    """What makes code of a program whose own modules have some texts."""
+    return target_machine(hurried=program.would_take_long(sum(text.count("\n") for text in texts)))
 
 
 def _optimise(module: binding.ModuleRef, program: Program, machine: binding.TargetMachine) -> None:
@@ -115,7 +145,6 @@ def _optimise(module: binding.ModuleRef, program: Program, machine: binding.Targ
     five times as long, are for loops over elements that become loops over vectors; those of O1 for such loops in large kernels. Vectors of
     statements that stand side by side are printed as such (`llvm.vectors`). docs/performance.md has the figures.
     """
-    make_private(module, program.exported)
     wants_thorough = bool(program.options.get("functions") or program.options.get("thorough"))
     loops = [kernel for kernel in program.kernels if has_loops_for_vectors(kernel)]
     if program.is_vast or not (wants_thorough or loops):
@@ -140,8 +169,9 @@ def _own_parts(program: Program, *, whole: bool) -> Iterator[str]:
     if program.is_typed:
         yield from _typed(program.first)
     else:
-        yield _emitted(program.first, FUNCTIONS[0], whole=whole, has_usual=program.has_usual)
-    yield from (_emitted(kernel, name, whole=whole) for kernel, name in zip(kernels[1:], FUNCTIONS[1:], strict=False))
+        yield from _emitted(program, 0, whole=whole)
+    for number in range(1, len(kernels)):
+        yield from _emitted(program, number, whole=whole)
     if opening is not None:
         yield _going_on(program.first, opening)
     for function in options.get("functions", ()):
@@ -193,12 +223,12 @@ def _usual(text: str, exported: tuple[str, ...]) -> str:
     return kept("call", text, lambda: shortened(text, exported).encode()).decode()
 
 
-def _surroundings(module: binding.ModuleRef, program: Program) -> Iterator[bytes]:
-    """The object files of what stands around a program's own module."""
+def _surroundings(declared: set[str], program: Program) -> Iterator[bytes]:
+    """The object files of what stands around a program's own modules, which have declared some functions."""
     around = _surrounding_texts(program)
     if around:
         yield _entries(*around)
-    yield from map(_shared, sorted(_wanted({each.name for each in module.functions if each.is_declaration})))
+    yield from map(_shared, sorted(_wanted(declared)))
 
 
 def _wanted(declared: Iterable[str]) -> set[str]:
@@ -228,21 +258,14 @@ def _shared(name: str) -> bytes:
     return kept("support", name, lambda: object_of([definitions.text((name,))], (name,)))
 
 
-def _emitted(kernel: Kernel, name: str, *, whole: bool, has_usual: bool = False) -> str:
-    module = ir.Module(name)
-    llvm.emit(module, kernel, name, whole=whole, has_usual=has_usual)
-    text = str(module)
-    _empty(module)
-    return text
-
-
-def _empty(module: ir.Module) -> None:
-    """Let go of a module's instructions, which refer to one another: LLVM needs the memory before the next search for garbage."""
-    for function in module.functions:
-        for block in function.blocks:
-            block.instructions.clear()
-            block.terminator = None
-        function.blocks.clear()
+def _emitted(program: Program, number: int, *, whole: bool) -> Iterator[str]:
+    """One of a program's kernels, of a vast program in parts."""
+    module = ir.Module(FUNCTIONS[number])
+    llvm.emit(module, program.kernels[number], FUNCTIONS[number], whole=whole, has_usual=number == 0 and program.has_usual)
+    if whole or not program.is_vast:
+        yield taken_text(module)
+    else:
+        yield from taken_parts(module)
 
 
 def _going_on(kernel: Kernel, opening: bytes) -> str:

@@ -26,34 +26,39 @@ UNORDERED = {sign: f"u{name}" for sign, name in (EQUAL | ORDERS).items()}
 ir.MetaDataString(ir.Module(), "").get_reference()
 
 
-class Line(ir.Value):
-    """An instruction: what others call its result, and its text."""
+class Result(ir.Value):
+    """What others call the result of an instruction: its text is in its block, and lives longer than whoever asks for the result."""
 
-    def __init__(self, type_: ir.Type, reference: str, text: str) -> None:
-        self.type, self.reference, self.text = type_, reference, text
+    def __init__(self, type_: ir.Type, reference: str) -> None:
+        self.type, self.reference = type_, reference
 
     def get_reference(self) -> str:
-        """How others name its result."""
+        """How others name it."""
         return self.reference
 
-    def __str__(self) -> str:
-        return self.text
+
+NONE = Result(NOTHING, "")
+"""That of instructions which have none."""
 
 
-class Branch(Line):
-    """A branch, which may be told how likely its edges are, and of the loop that it ends."""
+class Branch(ir.Value):
+    """A branch, the last instruction of its block, which may be told how likely its edges are, and of the loop that it ends."""
 
-    def __init__(self, text: str, lines: Lines) -> None:
-        super().__init__(NOTHING, "", text)
-        self.lines = lines
+    type = NOTHING
+
+    def __init__(self, lines: Lines, block: ir.Block) -> None:
+        self.lines, self.block = lines, block
 
     def set_weights(self, weights: Sequence[int]) -> None:
         """How often each edge is taken, in relation to the other."""
-        self.text += f", !prof {self.lines.weights(tuple(weights))}"
+        self._append(f", !prof {self.lines.weights(tuple(weights))}")
 
     def set_metadata(self, name: str, node: ir.Value) -> None:
         """What else is known of it."""
-        self.text += f", !{name} {node.get_reference()}"
+        self._append(f", !{name} {node.get_reference()}")
+
+    def _append(self, text: str) -> None:
+        self.block.instructions[-1] = f"{self.block.instructions[-1]}{text}"
 
 
 class Lines(ir.IRBuilder):
@@ -80,25 +85,28 @@ class Lines(ir.IRBuilder):
         """What llvmlite makes stands behind what stands here."""
         self._block.instructions.append(instr)
 
-    def _line(self, type_: ir.Type, text: str) -> Line:
+    def _line(self, type_: ir.Type, text: str) -> Result:
         reference = f"%-{next(self._numbers)}"
-        line = Line(type_, reference, f"{reference} = {text}")
-        self._block.instructions.append(line)
-        return line
+        self._block.instructions.append(f"{reference} = {text}")
+        return Result(type_, reference)
 
-    def _named(self, type_: ir.Type, text: str, name: str) -> Line:
+    def _named(self, type_: ir.Type, text: str, name: str) -> Result:
         if not name:
             return self._line(type_, text)
         reference = f'%"{self._block.scope.register(name, deduplicate=True)}"'
-        line = Line(type_, reference, f"{reference} = {text}")
-        self._block.instructions.append(line)
-        return line
+        self._block.instructions.append(f"{reference} = {text}")
+        return Result(type_, reference)
 
-    def _end(self, branch: Branch) -> Branch:
-        assert not self._block.is_terminated
-        self._block.instructions.append(branch)
-        self._block.terminator = branch
-        return branch
+    def _end(self, text: str) -> Branch:
+        """End the block. Its lines are one text from then on, which takes a third of the memory, unless there are others among them."""
+        block = self._block
+        assert not block.is_terminated
+        block.instructions.append(text)
+        block.terminator = NONE
+        lines = [each for each in block.instructions if isinstance(each, str)]
+        if len(lines) == len(block.instructions):
+            block.instructions[:] = ["\n  ".join(lines)]
+        return Branch(self, block)
 
     # --- memory and control --------------------------------------------------------------------------------------------------
 
@@ -112,9 +120,8 @@ class Lines(ir.IRBuilder):
 
     def store(self, value: ir.Value, ptr: ir.Value, align: int | None = None) -> ir.Value:
         aligned = "" if align is None else f", align {align}"
-        line = Line(NOTHING, "", f"store {value.type} {value.get_reference()}, ptr {ptr.get_reference()}{aligned}")
-        self._block.instructions.append(line)
-        return line
+        self._block.instructions.append(f"store {value.type} {value.get_reference()}, ptr {ptr.get_reference()}{aligned}")
+        return NONE
 
     def gep(
         self, ptr: ir.Value, indices: Sequence[ir.Value], inbounds: bool = False, name: str = "", source_etype: ir.Type | None = None
@@ -125,11 +132,11 @@ class Lines(ir.IRBuilder):
         return self._named(POINTER, f"{kind} {source_etype}, ptr {ptr.get_reference()}, {places}", name)
 
     def branch(self, target: ir.Block) -> ir.Terminator:
-        return self._end(Branch(f"br label {target.get_reference()}", self))
+        return self._end(f"br label {target.get_reference()}")
 
     def cbranch(self, cond: ir.Value, truebr: ir.Block, falsebr: ir.Block) -> ir.Terminator:
         edges = f"label {truebr.get_reference()}, label {falsebr.get_reference()}"
-        return self._end(Branch(f"br i1 {cond.get_reference()}, {edges}", self))
+        return self._end(f"br i1 {cond.get_reference()}, {edges}")
 
     def call(self, fn: ir.Value, args: Iterable[ir.Value], name: str = "") -> ir.Value:
         signature = fn.function_type
@@ -140,9 +147,8 @@ class Lines(ir.IRBuilder):
         text = f"call {convention}{' ' if convention else ''}{result} {fn.get_reference()}({arguments})"
         if result != NOTHING:
             return self._named(result, text, name)
-        line = Line(NOTHING, "", text)
-        self._block.instructions.append(line)
-        return line
+        self._block.instructions.append(text)
+        return NONE
 
     def extract_value(self, agg: ir.Value, idx: int) -> ir.Value:
         whole = agg.type

@@ -54,8 +54,9 @@ class NameScope:
 class Block(Value):
     function: Function
     scope: NameScope
-    instructions: list[Value]
-    terminator: Terminator | None
+    instructions: list[Value | str]
+    terminator: Value | None
+    def descr(self, buf: list[str]) -> None: ...
     @property
     def is_terminated(self) -> bool: ...
 
@@ -95,12 +96,14 @@ class Function(Value):
     @property
     def module(self) -> Module: ...
     blocks: list[Block]
+    scope: NameScope
     args: tuple[Argument, ...]
     attributes: AttributeSet
     linkage: str
     calling_convention: str
     def __init__(self, module: Module, ftype: FunctionType, name: str) -> None: ...
     def append_basic_block(self, name: str = "") -> Block: ...
+    def descr_prototype(self, buf: list[str]) -> None: ...
 
 class IRBuilder:
     _block: Block
