@@ -6,6 +6,8 @@ import random
 import shutil
 import struct
 import subprocess
+from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -129,22 +131,33 @@ def as_cdr(value: dict[str, object]) -> dict[str, object]:
     return {name: value[name] for name in names} | {"nodes": [as_cdr(each) for each in nodes], "leaves": leaves, "others": back}
 
 
+@pytest.fixture(scope="module")
+def program_of(tmp_path_factory):
+    """The source of a type in an encoding, the program around it, and the library's decoder and encoder."""
+
+    @cache
+    def made(encoding: str) -> tuple[str, Path, rj.Decoder, rj.Encoder]:
+        (type_, options), folder = SCHEMAS[encoding], tmp_path_factory.mktemp("within")
+        texts = generated(type_request("decode", type_, options), "cpp", BOTH, "unit", Wishes())
+        program = cpp.program(folder, cpp.write(folder, texts), options=cpp.QUICK)
+        return texts["unit.cpp"], program, rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
+
+    return made
+
+
 @cpp.needs_cpp
 @pytest.mark.parametrize("encoding", SCHEMAS)
-def test_messages_within_others(encoding, tmp_path):
-    type_, options = SCHEMAS[encoding]
-    decode, encode = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
+def test_messages_within_others(encoding, program_of):
+    text, program, decode, encode = program_of(encoding)
     chance = random.Random(encoding)
     values = [node(chance, depth, wide=True) for depth in (0, 1, 4, 2, 0, 3)] + [node(chance, depth, wide=False) for depth in (63, 64)]
     fixed = encoding == "lcm of fixed lists"
     good = [bytes(encode(as_cdr(each) if encoding == "cdr" else as_lcm(each, fixed=fixed))) for each in values]
     deep = deeper(good[-1], encoding)
     messages = [*good, *harmed([each for each in good if len(each) < 3000], 30, encoding), deep, *good]
-    texts = generated(type_request("decode", type_, options), "cpp", BOTH, "unit", Wishes())
-    assert "unit_nodes_objects::at(" in texts["unit.cpp"]
-    assert ("message_of(given_object.nodes," in texts["unit.cpp"]) == (not fixed)
-    found = answers(cpp.program(tmp_path, cpp.write(tmp_path, texts), options=cpp.QUICK), messages)
-    same(found, decode, encode, messages)
+    assert "unit_nodes_objects::at(" in text
+    assert ("message_of(given_object.nodes," in text) == (not fixed)
+    same(answers(program, messages), decode, encode, messages)
 
 
 def deeper(message: bytes, encoding: str) -> bytes:
@@ -158,7 +171,7 @@ def deeper(message: bytes, encoding: str) -> bytes:
 def test_counts_that_a_message_only_says(tmp_path):
     """Each of 64 messages within each other says that all bytes behind it are elements of its list."""
     options: dict[str, object] = {"encoding": "lcm", "schema": {"t/x.lcm": NESTED}}
-    size = 1 << 20
+    size = 1 << 16
     start = bytes(rj.Encoder.of("t.nested_t", **options)({"count": 0, "nodes": []}))[:8]
     message = start + b"".join(struct.pack(">i", size - 4 * level) for level in range(1, 65))
     message += bytes(8 + size - len(message))
@@ -187,22 +200,19 @@ def test_messages_that_have_none_within_them(tmp_path):
 
 
 @cpp.needs_cpp
-def test_a_list_that_becomes_long(tmp_path):
+def test_a_list_that_becomes_long(program_of):
     """Lists of more messages than are made at first: all of them are read, in an object that has others from before."""
-    type_, options = SCHEMAS["lcm"]
-    decode, encode = rj.Decoder.of(type_, **options), rj.Encoder.of(type_, **options)
+    _, program, decode, encode = program_of("lcm")
     leaf = node(random.Random(0), 0, wide=False)
     counts = (3, 1023, 1024, 1025, 5000, 2, 4097, 0)
     messages = [bytes(encode({**leaf, "nodes": [leaf] * count, "count": count})) for count in counts]
-    texts = generated(type_request("decode", type_, options), "cpp", BOTH, "unit", Wishes())
-    found = answers(cpp.program(tmp_path, cpp.write(tmp_path, texts), options=cpp.QUICK), messages)
-    same(found, decode, encode, messages)
+    same(answers(program, messages), decode, encode, messages)
 
 
 @cpp.needs_cpp
 def test_an_object_that_is_too_deep(tmp_path):
     """The depth is checked while an object is written, so that no further message is looked at."""
-    type_, options = SCHEMAS["lcm"]
+    type_, options = "t.nested_t", {"encoding": "lcm", "schema": {"t/x.lcm": NESTED}}
     (tmp_path / "deeper.cpp").write_text(DEEPER)
     unit = cpp.write(tmp_path, generated(type_request("encode", type_, options), "cpp", ("encode",), "unit", Wishes()))
     made = cpp.program(tmp_path, unit, options=cpp.QUICK, main=tmp_path / "deeper.cpp")

@@ -225,7 +225,7 @@ def test_long_messages_within_others_are_not_copied_by_each():
     schema = """
         message Leaf { string text = 1; bytes raw = 2; int32 n = 3; repeated string texts = 4; }
         message Flat { Leaf one = 1; repeated Leaf many = 2; map<string, Leaf> named = 3; map<string, bytes> raws = 4; string last = 5; }
-        message Root { Flat a = 1; repeated Flat b = 2; Chain c = 3; string text = 4; }
+        message Root { Flat a = 1; repeated Flat b = 2; Chain c = 3; string text = 4; Only d = 5; }
         message Chain { Chain next = 1; string text = 2; bytes raw = 3; map<string, Chain> named = 4; map<string, string> texts = 5; }
         message Only { Only next = 1; string text = 2; }
     """
@@ -241,31 +241,24 @@ def test_long_messages_within_others_are_not_copied_by_each():
     for _ in range(5):
         chain = {"next": chain, "text": "é" * 9000, "raw": b"b" * 9000, "named": {"n" * 9000: {"text": "t" * 9000}}}
     only = {"text": "only" * 5000}
-    cases = {
-        "Flat": [flat, {}],
-        "Root": [{"a": flat, "b": [flat], "c": chain, "text": "r" * 9000}],
-        "Chain": [chain],
-        "Only": [only, {"next": only}],
-    }
-    for type_, values in cases.items():
-        request = type_request("decode", f"t.{type_}", protobuf(schema))
-        unit, encode, decode = (
-            module(request),
-            rj.Encoder.of(f"t.{type_}", **protobuf(schema)),
-            rj.Decoder.of(f"t.{type_}", **protobuf(schema)),
-        )
-        for each in values:
-            message = bytes(encode(encode.holder_type.from_dict(each)))
-            assert unit.encode(unit.decode(message)) == message
-            assert bytes(encode(decode(message))) == message
-    made = module(type_request("decode", "t.Flat", protobuf(schema)))
+    values = [{"a": flat}, {"a": {}}, {"c": chain}, {"d": only}, {"d": {"next": only}}]
+    values.append({"a": flat, "b": [flat], "c": chain, "text": "r" * 9000, "d": only})
+    given = protobuf(schema)
+    unit, decode, encode = (
+        module(type_request("decode", "t.Root", given)),
+        rj.Decoder.of("t.Root", **given),
+        rj.Encoder.of("t.Root", **given),
+    )
+    for each in values:
+        message = bytes(encode(encode.holder_type.from_dict(each)))
+        assert unit.encode(unit.decode(message)) == message
+        assert bytes(encode(decode(message))) == message
     for wrong in ({"raw": "s" * 9000}, {"text": b"s" * 9000}, {"raw": [0] * 9000}, {"texts": [None]}, {"raw": None}):
-        with pytest.raises(made.EncodeError, match="range"):
-            made.encode(made.Flat(one=made.Leaf(**wrong)))
-    recursive = module(type_request("decode", "t.Only", protobuf(schema)))
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(unit.Root(a=unit.Flat(one=unit.Leaf(**wrong))))
     for wrong in (b"s" * 9000, None, 5):
-        with pytest.raises(recursive.EncodeError, match="range"):
-            recursive.encode(recursive.Only(text=wrong))
+        with pytest.raises(unit.EncodeError, match="range"):
+            unit.encode(unit.Root(d=unit.Only(text=wrong)))
 
 
 def test_fields_with_their_default_are_left_out_and_looked_at():
