@@ -36,6 +36,7 @@ message Note { string text = 1; repeated int64 many = 2; }
 message M { int32 value = 1; repeated int64 many = 2; Note note = 3; repeated M kids = 4; string behind = 5; }
 """
 """One field alone contains its type: the rows of its lane are the list of rows that are written."""
+SMALL = 'syntax = "proto3"; package t; message M { repeated M kids = 1; M last = 2; }'
 UNKNOWN = b"\xa0\x06\xac\x02"
 DEEPER = """#include "unit.hpp"
 #include <cstdio>
@@ -183,7 +184,9 @@ def test_classes_of_protoc(name, tmp_path):
 def test_an_object_that_is_too_deep(tmp_path):
     """The stack has room for what is written by functions that call each other."""
     (tmp_path / "deeper.cpp").write_text(DEEPER)
-    made = cpp.program(tmp_path, written(tmp_path, "one", Wishes()), options=QUICK, main=tmp_path / "deeper.cpp")
+    request = type_request("decode", "t.M", {"encoding": "protobuf", "schema": {"t.proto": SMALL}})
+    unit = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit"))
+    made = cpp.program(tmp_path, unit, options=QUICK, main=tmp_path / "deeper.cpp")
     found = subprocess.run([made], check=True, capture_output=True, text=True).stdout
     refused = "nesting: a message contains itself, or too many within each other"
     assert found.splitlines() == [*["written"] * 4, *[refused] * 4]
