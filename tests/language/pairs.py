@@ -67,7 +67,7 @@ class Later:
         self._made = cache(lambda: make(*arguments, **options))
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):  # by which pytest looks for fixtures
+        if name.startswith("_"):  # by which pytest looks for fixtures
             raise AttributeError(name)
         return getattr(self._made(), name)
 
