@@ -33,9 +33,10 @@ usecase: $(VENV)/.test ## a component on RSB moves a simulated iCub on YARP (a r
 	$(BIN)/python -m tests.usecase $(ARGS)
 
 # Each worker reads the modules of all tests, which pytest rewrites: what comes of that is kept beside them, as is that of installed packages.
+# In the order of their names, files that take long are not the last ones, for which other workers would wait.
 test: export PYTHONDONTWRITEBYTECODE :=
 test: check ## lint, check types, run all tests but the campaigns
-	$(BIN)/python -m pytest -m "not campaign" -n auto --dist loadfile $(ARGS)
+	$(BIN)/python -m pytest -m "not campaign" -n auto --dist loadfile --no-loadscope-reorder $(ARGS)
 
 check: $(VENV)/.test ## lint and check types alone
 	$(BIN)/ruff check
