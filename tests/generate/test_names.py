@@ -183,7 +183,7 @@ def through_c(made: Case, folder: Path) -> list[str]:
     unbounded = re.findall(r"#ifndef (UNIT_\w+)\n#define \1 \d", "".join(texts.values()))
     options = ("-O0", "-std=gnu11", "-include", "standard.h", *(f"-D{each}={ROOM}" for each in unbounded))
     if shutil.which("clang") is not None:
-        driver.compiled("clang", folder, name, *options)
+        driver.compiled("clang", folder, name, *options, "-fsyntax-only")
     return driver.answers(driver.driver(folder, name, options=options), made.messages)
 
 
