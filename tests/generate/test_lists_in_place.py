@@ -268,13 +268,14 @@ def check_random(folder: Path, seed: int, compiled: tuple[str, ...] = THOROUGH) 
     texts = {name: "".join(f"{kind} {field}\n" for field, kind in fields) for name, fields in types.items()}
     top = f"Level{LEVELS - 1}"
     schema = texts.pop(top) + "".join(f"{SEPARATOR}\nMSG: rj/{name}\n{text}" for name, text in texts.items())
-    for encoding in ("ros1", "cdr"):
-        options = {"encoding": encoding, "schema": schema.replace("<=4", "" if encoding == "ros1" else "<=4")}
-        name = cpp.write(folder, generated(type_request("decode", f"rj/{top}", options), "cpp", BOTH, "unit"))
+    options_of = {each: {"encoding": each, "schema": schema.replace("<=4", "" if each == "ros1" else "<=4")} for each in ("ros1", "cdr")}
+    units = {each: generated(type_request("decode", f"rj/{top}", options), "cpp", BOTH, each) for each, options in options_of.items()}
+    program = cpp.program(folder, cpp.write_as_one(folder, "units", units.values()), options=compiled, units=units)
+    for encoding, options in options_of.items():
         decode, encode = (of(f"rj/{top}", **options) for of in (rj.Decoder.of, rj.Encoder.of))
         good = [bytes(encode(value_of(chance, types, top))) for _ in range(12)]
         messages = [*good, *harmed(good, 12, str(seed)), *reversed(good)]
-        same(answers(cpp.program(folder, name, options=compiled), messages), decode, encode, messages)
+        same(answers(program, messages, unit=encoding), decode, encode, messages)
 
 
 @cpp.needs_cpp

@@ -27,7 +27,7 @@ message M {
 SEVERAL = """syntax = "proto3"; package t;
 message Pair { M first = 1; M second = 2; uint32 value = 3; }
 message M {
-  repeated M kids = 1; int32 value = 2; repeated Pair pairs = 3; repeated int64 many = 4; map<string, M> named = 5;
+  repeated M kids = 1; int32 value = 2; repeated Pair pairs = 3; map<string, M> named = 5;
   oneof kind { string text = 6; M only = 7; } sint64 behind = 8;
 }
 """
