@@ -21,6 +21,10 @@ TRIANGLE, CORNER = "MSG: rj/Triangle\nuint32[3] corners\nint32 side\n", "MSG: rj
 TRIANGLES = [{"corners": [each, each + 1, each + 2], "side": -each} for each in range(18)]
 POSE = "MSG: rj/Pose\nCorner position\nbyte kind\nCorner size\n"
 POSES = [{"position": {"x": each, "z": -0.5}, "kind": each, "size": {"y": 0.5 * each}} for each in range(6)]
+STATUS = "MSG: rj/Status\nbyte level\nstring name\nfloat32[] raw\nint16[2] two\nValue[] values\nuint16 last\n"
+VALUE = "MSG: rj/Value\nstring key\nstring value\n"
+VALUES = [{"key": "k" * each, "value": "v" * (40 - each)} for each in range(5)]
+STATUSES = [{"level": each, "name": "n" * each, "raw": [0.5] * each, "two": [each, -each], "values": VALUES[:each]} for each in range(4)]
 TYPES = {
     "numbers": (NUMBERS, {"flag": True, "x": 1.5, "small": -3, "covariance": [0.5 * i for i in range(36)], "three": [1, -2, 3], "y": 2.5}),
     "text": ("string data\n", {"data": "as it is"}),
@@ -49,6 +53,10 @@ TYPES = {
         f"Kind[] kinds\nstring[] names\nKind[] others\n{SEPARATOR}\nMSG: rj/Kind\nuint8 kind\n",
         {"kinds": [{"kind": each} for each in range(16)], "others": [{"kind": 7}]},
     ),
+    "lists within lists": (
+        f"uint8 first\nStatus[] statuses\nstring last\n{SEPARATOR}\n{STATUS}\n{SEPARATOR}\n{VALUE}",
+        {"first": 1, "statuses": STATUSES, "last": "end"},
+    ),
     "arrays": ("string name\nfloat64[] many\nint16[] few\nuint8 last\n", {"name": "n", "many": [1.0, 2.0, 3.0], "few": [-1, 2], "last": 4}),
 }
 OTHERS = {
@@ -58,6 +66,7 @@ OTHERS = {
     "lists before arrays": {"names": ["one", "another"]},
     "lists of texts": {"names": ["one"], "others": ["another", ""]},
     "lists of numbers": {"gaps": GAPS[:16], "points": POINTS[:17]},
+    "lists within lists": {"statuses": STATUSES[3:]},
     "a list of numbers": {"points": POINTS},
     "triangles": {"triangles": TRIANGLES, "corners": POINTS[:17]},
     "poses between texts": {"frame": "", "poses": POSES, "name": "\u00e4"},
@@ -109,6 +118,7 @@ def test_messages_that_are_harmed_get_the_same_answers(type_, units):
     assert ("static bool is_read(" in header) == (type_ in IN_HEADER and is_found)
     assert ("static bool is_read_empty(" in header) == (type_ in (EMPTY if encoding == "ros1" else EMPTY_IN_CDR))
     assert ("put_at_once(" in header) == (type_ in WRITTEN and is_found)
+    assert ("statuses_values_list::at(" in header) == (type_ == "lists within lists" and encoding == "ros1")
     values = TYPES[type_][1]
     other = values | OTHERS.get(type_, {})
     encoders_ = encoders(type_, encoding)

@@ -286,7 +286,8 @@ def list_within(scope: Scope, lane: int, row: nodes.Expr) -> tuple[str, str]:
 def _field(scope: Scope, place: nodes.Place, type_: nodes.Scalar) -> str | None:
     if place.lane in scope.lanes.within:
         view, number = list_within(scope, place.lane, place.row)
-        return f"{view}[{number}]{scope.lanes.path(place.lane, place.offset, type_)}"
+        shown = scope.lanes.shown.get((place.lane, place.offset), f"$list[$index]{scope.lanes.path(place.lane, place.offset, type_)}")
+        return Template(shown).substitute(type=C_ROWS[type_], index=number, list=view)
     row = bare(expression(scope, place.row))
     found = scope.lanes.field(place.lane, row, place.offset, type_)
     shown = None if found is None else scope.lanes.shown.get((place.lane, place.offset))

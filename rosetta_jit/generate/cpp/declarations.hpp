@@ -40,6 +40,18 @@ $statements
         if (ROSETTA_JIT_LIKELY(size >= 0)) {
             return static_cast<std::size_t>(size);
         }
+/* == puts_empty == */
+        const std::int64_t empty_size = put_empty_at_once(source, static_cast<unsigned char *>(bytes), static_cast<std::int64_t>(capacity));
+        if (empty_size >= 0) {
+            return static_cast<std::size_t>(empty_size);
+        }
+/* == put_empty_at_once_private == */
+    /* Writes a message without elements that have texts or lists; a negative number where it is another one, or anything is wrong. */
+    static std::int64_t put_empty_at_once(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end)
+    {
+$statements
+    }
+
 /* == put_at_once_private == */
     /* Writes a message where a compiler sees the object, too, and says how many bytes it took; a negative number where anything is wrong. */
     static std::int64_t put_at_once(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end)

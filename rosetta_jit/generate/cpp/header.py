@@ -29,11 +29,12 @@ RESET = (
 
 @dataclass(frozen=True, slots=True)
 class AtOnce:
-    """The statements that read a message in the header, or an empty one, and those that write one; empty where it cannot be."""
+    """The statements that read a message in the header, or an empty one, and those that write one, or such; empty where it cannot be."""
 
     reads: str = ""
     reads_empty: str = ""
     puts: str = ""
+    puts_empty: str = ""
 
 
 def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
@@ -65,6 +66,7 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
                 ("read_empty_at_once", there.reads_empty),
                 ("read_at_once", there.reads),
                 ("decode_any", "any" if "borrow" in unit.kernels else ""),
+                ("put_empty_at_once", there.puts_empty),
                 ("put_at_once", there.puts),
                 ("encode_any", "any" if "encode" in unit.kernels else ""),
             )
@@ -135,7 +137,8 @@ def _declared(unit: Unit, there: AtOnce) -> list[str]:
     for wire in wires_of(unit):
         every, last = unit.arrivals[wire]
         found.append(Template(known["wire"]).substitute(wire=wire, every=every, last=last))
-    puts = known["puts"].rstrip() if there.puts else ""
+    parts = (("puts_empty", there.puts_empty), ("puts", there.puts))
+    puts = "\n".join(known[name].rstrip() for name, text in parts if text)
     encode = [Template(known["encode"]).substitute(puts=puts)] if "encode" in unit.kernels else []
     return [re.sub(r"\{\n\n+", "{\n", text) for text in (*found, *encode)]
 

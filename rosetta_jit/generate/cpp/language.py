@@ -41,7 +41,7 @@ def files(unit: Unit) -> dict[str, str]:
     there = AtOnce(
         "" if short is None else at_once(*short, short if inner is not None else open_decoder_of(unit, manners, parts.lanes)),
         "" if short is None else of_no_elements_at_once(*short),
-        put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else "",
+        *(put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else ("", "")),
     )
     return {
         f"{unit.name}.hpp": header(unit, manners, there),

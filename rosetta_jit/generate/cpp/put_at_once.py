@@ -19,12 +19,12 @@ from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.always import is_plain, numbers
 from rosetta_jit.generate.cpp.at_once import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
 from rosetta_jit.generate.cpp.empty_lists import NOT_EMPTY, of_no_elements
-from rosetta_jit.generate.cpp.few_elements import most_elements
 from rosetta_jit.generate.cpp.lists_in_place import spans_of
 from rosetta_jit.generate.cpp.measured_first import measured_first
 from rosetta_jit.generate.cpp.messages_within import descents_of
 from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
-from rosetta_jit.generate.cpp.shown_elements import shown_elements
+from rosetta_jit.generate.cpp.reading import reader
+from rosetta_jit.generate.cpp.shown_elements import Shown, shown_elements
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.roundings import two_roundings
@@ -38,34 +38,62 @@ from rosetta_jit.kernel.terms import index
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Number
 from rosetta_jit.model.types import Array, Bytes, String
-from rosetta_jit.startup.dataclass import replace
+from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.cpp.manners import Manners
 
 OBJECT = "given_object"
+FEW_LINES = 60
+"""What compilers put in place of a call."""
 FILL = nodes.Reserve | nodes.Call | nodes.HostCall
-LEAVE = FILL | nodes.Require | nodes.Return
-"""Statements that fill rows or call a function, and those that leave the function or ask for room."""
+LEAVE = FILL | nodes.Return
+"""Statements that fill rows or call a function, and those that leave the function."""
 
 
-def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> str:
-    """The statements of such an encoder, empty where there is none."""
-    kernel = unit.kernels["encode"]
-    if wires_of(unit) or two_roundings((kernel,)):
-        return ""
-    reached_by, starts, lists = _shown(Walk(unit, lanes, manners, "encode"))
+@dataclass(frozen=True, slots=True)
+class Object:
+    """How an encoder reaches what every message has, and where spans begin in its row: of texts and numbers, and of other lists.
+
+    Of these it says how many elements are written at most, which may be none. ``counts`` are fields that are counts, ``named`` is what
+    shows lists within others.
+    """
+
+    lanes: Lanes
+    starts: frozenset[int]
+    lists: Mapping[int, int | None]
+    counts: Collection[tuple[int, int]]
+    named: Mapping[str, str]
+
+
+def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> tuple[str, str]:
+    """The statements of such an encoder, empty where there is none; and those of one for messages without elements that have texts.
+
+    There are these where a compiler would call the first ones, as they are many; where those would be too many, they are all there is.
+    """
+    if wires_of(unit) or two_roundings((unit.kernels["encode"],)):
+        return "", ""
+    walk = reader(unit, lanes, manners)
+    puts, puts_empty = (_printed(unit, _object(walk, is_any_shown=each)) for each in (True, False))
+    if puts in ("", puts_empty):
+        return puts_empty, ""
+    return puts, "" if puts.count("\n") <= FEW_LINES else puts_empty
+
+
+def _printed(unit: Unit, reached_by: Object) -> str:
+    kernel, lanes, lists = unit.kernels["encode"], reached_by.lanes, reached_by.lists
     descents = descents_of(unit).get("encode")
     kernel = undamaged_kernel(kernel) if descents is None else replace(kernel, bodies=(descents.body,))
-    kernel = with_numbers_apart(kernel, unit.layout)
+    kernel = with_numbers_apart(kernel, unit.layout, lanes.opened)
     empty = sorted(at for at, most in lists.items() if most == 0)
-    body = _with_zeros(tuple(_checked(kernel.bodies[0], lists)), {*starts, *lists, *(at + 8 for at in empty)})
+    body = _with_zeros(tuple(_checked(kernel.bodies[0], lists)), {*reached_by.starts, *lists, *(at + 8 for at in empty)})
     body = reached(decided((*map(_is_empty, empty), *of_no_elements(body, () if descents is None else descents.visits))))
-    if not _is_short(body):
+    if not _is_straight(body) or _copies(body, {*lanes.opened, *lanes.within}):
         return ""
-    body = measured_first(body, {at + 8 for at in (*starts, *lists)})
-    words = lanes.words() | function_names() | {"data"}
-    scope = Scope(Namespace(words), reached_by, set(), set(), set())
+    body = measured_first(body, reached_by.counts)
+    if sum(1 for _ in statements(body)) > MOST:
+        return ""
+    scope = Scope(Namespace(lanes.words() | function_names() | {"data", *reached_by.named}), lanes, set(), set(), set())
     function = Function(scope, kernel.sites, {}, read=read_names(body), otherwise="return -1;")
     function.writer.depth = 2
     for stmt in body:
@@ -73,22 +101,27 @@ def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> str:
             check(function, stmt, function.otherwise, marked=are_marked(body))
         else:
             print_block(function, (stmt,))
-    arrays = [lane for lane in sorted(scope.touched) if lane in reached_by.given]
-    types = ("const auto " if lane in reached_by.opened else f"const {lanes.type(lane)} *const " for lane in arrays)
-    names = [f"{type_}{lanes.rows(lane)}" for lane, type_ in zip(arrays, types, strict=True)]
-    function.writer.lines[:0] = [f"        {name} = {reached_by.member(lane)};" for name, lane in zip(names, arrays, strict=True)]
+    function.writer.lines[:0] = _begun(reached_by, scope, function.writer.lines)
     is_free = frozenset(scope.parameters) == PARAMETERS and all(map(is_shared, scope.support)) and not scope.tables
     return function.writer.text() if is_free else ""
 
 
-def _shown(walk: Walk) -> tuple[Lanes, frozenset[int], dict[int, int]]:
-    """How an encoder reaches what every message has, and where spans begin in its row: of texts and numbers, and of other lists.
+def _begun(reached_by: Object, scope: Scope, lines: Collection[str]) -> list[str]:
+    """What is declared before the statements: pointers to arrays and lists, and the types of lists within these."""
+    lanes = reached_by.lanes
+    arrays = [lane for lane in sorted(scope.touched) if lane in lanes.given]
+    types = ("const auto " if lane in lanes.opened else f"const {lanes.type(lane)} *const " for lane in arrays)
+    names = [f"{type_}{lanes.rows(lane)}" for lane, type_ in zip(arrays, types, strict=True)]
+    begun = [f"        {name} = {lanes.member(lane)};" for name, lane in zip(names, arrays, strict=True)]
+    used = (name for name in reached_by.named if any(f"{name}::at(" in line for line in lines))
+    return [*begun, *(f"        using {name} = {reached_by.named[name]};" for name in used)]
 
-    Of these it says how many elements are written, which may be none.
-    """
-    lanes = walk.lanes
+
+def _object(walk: Walk, *, is_any_shown: bool) -> Object:
+    """The same of an encoder's walk; ``is_any_shown``: also lists that are read element by element, however many there are."""
+    lanes, elements, lists = walk.lanes, list[Shown](), dict[int, int | None]()
     shown = {(0, offset): f"rosetta_jit::detail::got<$type>({spot.at})" for offset, _, spot in numbers(walk, OBJECT)}
-    given, starts, lists, opened, arrays = dict[int, Given](), set[int](), dict[int, int](), set[int](), set[int]()
+    given, starts, opened = dict[int, Given](), set[int](), set[int]()
     for type_, slot, spot in spans_of(walk, OBJECT):
         if isinstance(type_, String | Bytes | Array) and is_plain(walk, type_, slot.lane):
             at = walk.text("direct", spot)
@@ -97,15 +130,28 @@ def _shown(walk: Walk) -> tuple[Lanes, frozenset[int], dict[int, int]]:
             starts.add(slot.offset)
         elif isinstance(type_, Array) and type_.fixed is None and not isinstance(walk.unit.layout.lanes[slot.lane].element, Number):
             shown[0, slot.offset + 8] = f"rosetta_jit::detail::count_of({spot.at})"
-            each = shown_elements(walk, type_, slot, spot.at)
-            lists[slot.offset] = 0 if each is None else most_elements(lanes.stride(slot.lane))
-            if each is not None:
+            each = shown_elements(walk, type_, slot, spot)
+            is_shown = each is not None and (is_any_shown or each.most is not None)
+            lists[slot.offset] = each.most if each is not None and is_shown else 0
+            if each is not None and is_shown:
                 given[slot.lane] = Given("", each.first)
-                shown |= each.fields
-                arrays |= each.arrays
                 opened.add(slot.lane)
-    reached_by = replace(lanes, shown=shown, given=given, opened=frozenset(opened), addressed=frozenset(arrays), shared=SHARED, row=True)
-    return reached_by, frozenset(starts), lists
+                elements.append(each)
+    shown |= {at: text for each in elements for at, text in each.fields.items()}
+    counts = {(0, at + 8) for at in (*starts, *lists)}.union(*(each.counts for each in elements))
+    arrays = frozenset(lane for each in elements for lane in each.arrays)
+    within = {lane: list_ for each in elements for lane, list_ in each.within.items()}
+    reached_by = replace(
+        lanes, shown=shown, given=given, opened=frozenset(opened), addressed=arrays, within=within, shared=SHARED, row=True
+    )
+    named = {name: type_ for each in elements for name, type_ in each.named.items()}
+    return Object(reached_by, frozenset(starts), lists, counts, named)
+
+
+def _copies(body: Block, lanes: Collection[int]) -> bool:
+    """Whether rows of lanes are copied, or bytes of them: the elements of an object need not lie so."""
+    copied = (stmt.source for stmt, _ in statements(body) if isinstance(stmt, nodes.Copy))
+    return any(isinstance(source, nodes.Place) and source.lane in lanes for source in copied)
 
 
 def _is_empty(offset: int) -> nodes.Stmt:
@@ -113,12 +159,12 @@ def _is_empty(offset: int) -> nodes.Stmt:
     return nodes.Expect(nodes.Compare("eq", nodes.Get("i64", nodes.Place(0, index(0), offset + 8)), index(0)), NOT_EMPTY)
 
 
-def _checked(body: Block, lists: Mapping[int, int]) -> Iterator[nodes.Stmt]:
+def _checked(body: Block, lists: Mapping[int, int | None]) -> Iterator[nodes.Stmt]:
     """Statements with checks that lists have few elements: one with more is written there, too. Few are never too many."""
     few = dict[str, int]()
     for stmt in body:
         match stmt:
-            case nodes.Let(name, nodes.Get("i64", nodes.Place(0, _, offset))) if most := lists.get(offset - 8, 0):
+            case nodes.Let(name, nodes.Get("i64", nodes.Place(0, _, offset))) if most := lists.get(offset - 8):
                 few[name] = most
                 yield from (stmt, nodes.Expect(nodes.Compare("le", nodes.Local("i64", name), index(most)), NOT_EMPTY))
             case nodes.Expect(nodes.Compare("lt", nodes.Local(_, name), nodes.Const(_, bound))) if few.get(name, bound) < bound:
@@ -141,8 +187,8 @@ def _with_zeros(block: Block, offsets: Collection[int]) -> Block:
     return tuple(with_expressions(stmt, replaced) for stmt in inner)
 
 
-def _is_short(body: Block) -> bool:
-    """Whether a body has few statements, of which none within others returns, and the last one does."""
+def _is_straight(body: Block) -> bool:
+    """Whether a body calls nothing, and returns at its end alone, but where anything is wrong."""
     found = [*statements(body)]
     leaves = any(isinstance(stmt, LEAVE if depth > 1 else FILL) for stmt, depth in found)
-    return len(found) <= MOST and not leaves and isinstance(body[-1], nodes.Return) and not body[-1].registers
+    return not leaves and isinstance(body[-1], nodes.Return) and not body[-1].registers

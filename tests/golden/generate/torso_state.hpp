@@ -87,18 +87,12 @@ private:
         if (ROSETTA_JIT_UNLIKELY(0 >= count)) {
             return -1;
         }
-        const float element = angles[0];
-        const double yaw = static_cast<double>(element) * 57.29577951308232;
         if (ROSETTA_JIT_UNLIKELY(1 >= count)) {
             return -1;
         }
-        const float element_2 = angles[1];
-        const double roll = static_cast<double>(element_2) * 57.29577951308232;
         if (ROSETTA_JIT_UNLIKELY(2 >= count)) {
             return -1;
         }
-        const float element_3 = angles[2];
-        const double pitch = static_cast<double>(element_3) * 57.29577951308232;
         if (ROSETTA_JIT_UNLIKELY(count != 3)) {
             return -1;
         }
@@ -107,8 +101,14 @@ private:
         }
         rosetta_jit::detail::store_i32_le(bytes + 0, 266);
         rosetta_jit::detail::store_i32_le(bytes + 4, 3);
+        const float element = angles[0];
+        const double yaw = static_cast<double>(element) * 57.29577951308232;
         rosetta_jit::detail::store_f64_le(bytes + 8, yaw);
+        const float element_2 = angles[1];
+        const double roll = static_cast<double>(element_2) * 57.29577951308232;
         rosetta_jit::detail::store_f64_le(bytes + 16, roll);
+        const float element_3 = angles[2];
+        const double pitch = static_cast<double>(element_3) * 57.29577951308232;
         rosetta_jit::detail::store_f64_le(bytes + 24, pitch);
         return 32;
     }

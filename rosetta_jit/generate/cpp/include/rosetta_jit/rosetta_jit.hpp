@@ -545,10 +545,9 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
         std::memcpy(at, &first, 4);
         std::memcpy(at + size - 4, &last, 4);
     } else {
-        const unsigned char first = begin[0], middle = begin[size / 2], last = end[-1];
-        at[0] = first;
-        at[size / 2] = middle;
-        at[size - 1] = last;
+        at[0] = begin[0];
+        at[size / 2] = begin[size / 2];
+        at[size - 1] = end[-1];
     }
 }
 
@@ -1692,14 +1691,41 @@ template <class Container> ROSETTA_JIT_INLINE auto elements_of(Container &source
     }
 }
 
-/* A list by an address: that of its elements, where they lie so, else its own. */
-template <class Span, class Container> ROSETTA_JIT_INLINE void point_list(Span &span, const Container &from)
+/* The address of a list: that of its elements, where they lie so, else its own. */
+template <class Container> ROSETTA_JIT_INLINE std::int64_t address_of_list(const Container &from) noexcept
 {
     const void *at = std::addressof(from);
     if constexpr (lie_in_order<Container>::value) {
         at = elements_of(from);
     }
-    span.start = static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(at));
+    return static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(at));
+}
+
+/* The elements of a list by that address. */
+template <class Container> struct pointed {
+    static constexpr bool IN_ORDER = lie_in_order<Container>::value;
+    using Elements = decltype(elements_of(std::declval<const Container &>()));
+    Elements elements = {};
+
+    ROSETTA_JIT_INLINE static pointed at(std::int64_t address)
+    {
+        pointed found;
+        const std::uintptr_t start = static_cast<std::uintptr_t>(address);
+        if constexpr (IN_ORDER) {
+            found.elements = reinterpret_cast<Elements>(start);
+        } else {
+            found.elements = std::begin(*reinterpret_cast<const Container *>(start));
+        }
+        return found;
+    }
+
+    ROSETTA_JIT_INLINE decltype(auto) operator[](std::int64_t index) const { return elements[static_cast<std::ptrdiff_t>(index)]; }
+};
+
+/* A list as a span by its address. */
+template <class Span, class Container> ROSETTA_JIT_INLINE void point_list(Span &span, const Container &from)
+{
+    span.start = address_of_list(from);
     span.count = count_of(from);
 }
 
@@ -1714,15 +1740,7 @@ template <class Span, class Object> ROSETTA_JIT_INLINE void point_object(Span &s
 template <class Container> struct objects {
     using type = element_type<Container>;
 
-    ROSETTA_JIT_INLINE static const type &at(std::int64_t address, std::int64_t index)
-    {
-        const std::uintptr_t start = static_cast<std::uintptr_t>(address);
-        if constexpr (lie_in_order<Container>::value) {
-            return reinterpret_cast<const type *>(start)[index];
-        } else {
-            return std::begin(*reinterpret_cast<const Container *>(start))[static_cast<std::ptrdiff_t>(index)];
-        }
-    }
+    ROSETTA_JIT_INLINE static const type &at(std::int64_t address, std::int64_t index) { return pointed<Container>::at(address)[index]; }
 };
 
 /* Messages of a list are made before they are read. Where a count that a message only says would take too much memory, some are made at first, and then more:
@@ -1826,10 +1844,9 @@ std::enable_if_t<!std::is_pointer_v<Elements>> copy_known(Elements target, std::
 
 /* To write a message: rows that are made of the elements of a container when they are read. `Rows` says how. */
 template <class Row, class Container, class Rows> struct view {
-    static constexpr bool IN_ORDER = lie_in_order<Container>::value;
+    static constexpr bool IN_ORDER = pointed<Container>::IN_ORDER;
     static constexpr bool LIES = IN_ORDER && Rows::template lies<element_type<Container>>();
-    using Elements = decltype(elements_of(std::declval<const Container &>()));
-    Elements elements = {};
+    typename pointed<Container>::Elements elements = {};
     std::int64_t used = 0;
     std::int64_t capacity = 0;
 
@@ -1843,12 +1860,7 @@ template <class Row, class Container, class Rows> struct view {
     ROSETTA_JIT_INLINE static view at(std::int64_t address)
     {
         view found;
-        const std::uintptr_t start = static_cast<std::uintptr_t>(address);
-        if constexpr (IN_ORDER) {
-            found.elements = reinterpret_cast<Elements>(start);
-        } else {
-            found.elements = std::begin(*reinterpret_cast<const Container *>(start));
-        }
+        found.elements = pointed<Container>::at(address).elements;
         return found;
     }
 
