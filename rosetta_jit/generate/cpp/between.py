@@ -264,7 +264,8 @@ def _entries(walk: Walk, key: Type, value: Type, slot: Span, row: str, spot: Spo
             walk.writer.line(f"typename std::decay_t<decltype({spot.at})>::key_type {walk.local('key')}{{}};")
             for number, (type_, member, own, what) in enumerate(parts):
                 if number:
-                    walk.writer.line(f"auto &{walk.local('mapped')} = {walk.text('map entry', spot, key=walk.local('key'))};")
+                    found = walk.text("map entry", spot, key=f"std::move({walk.local('key')})")
+                    walk.writer.line(f"auto &{walk.local('mapped')} = {found};")
                 _plain(walk, type_, member, own.type, f"{inner}.{own.identifier}", walk.local(what))
     else:
         start, _ = _take_rows(walk, row, slot.lane, spot)
@@ -293,9 +294,10 @@ def _mapped(walk: Walk, type_: Type, lane: int, row: str, at: str) -> None:
     """The value of an entry whose type contains the map: the entry has it itself, and no pointer to it."""
     walk.depth += 1
     if walk.direction == "decode":
-        walk.writer.line(f"{at} = std::decay_t<decltype({at})>{{}}; /* an earlier entry may have the same key */")
         with walk.writer.indented(f"if ({row}.count > 0) {{"):
             _of_row(walk, type_, lane, f"{row}.start", Spot(at))
+        with walk.writer.indented("} else { /* an earlier entry may have the same key */"):
+            walk.writer.line(f"{at} = std::decay_t<decltype({at})>{{}};")
         walk.writer.line("}")
     else:
         _take_one(walk, type_, lane, row, Spot(at))
