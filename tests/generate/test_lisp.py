@@ -197,6 +197,18 @@ def test_holders_are_classes(tmp_path):
     ]
 
 
+@lisp.needs_sbcl
+def test_symbols_do_not_depend_on_how_a_program_prints_them(tmp_path):
+    """Many an initialisation file sets ``*print-case*``, under which the unit and its runtime are compiled then."""
+    header = type_request("decode", "std_msgs/Header", {"encoding": "ros1"})
+    unit = lisp.write(tmp_path, generated(header, "lisp", BOTH, "joints"))
+    files = [f'(load (compile-file "{tmp_path}/{name}.lisp"))' for name in (f"{unit}-runtime", unit)]
+    shown = ["(setf *print-case* :upcase *print-pretty* nil)", "(print (joints:decode (joints:encode (joints:make-header :seq 7))))"]
+    for case in (":upcase", ":downcase", ":capitalize"):
+        found = lisp.run(f"(setf *print-case* {case})", *files, *shown, cwd=tmp_path)
+        assert found.splitlines()[-1].startswith("#S(JOINTS:HEADER :SEQ 7 "), case
+
+
 WIDE = """syntax = "proto3"; package w; message Part { double x = 1; uint64 y = 2; }
 message Wide { uint64 a = 1; sint64 b = 2; double c = 3; repeated uint64 d = 4; repeated Part parts = 5; string name = 6; }"""
 WIDE_MESSAGE = (

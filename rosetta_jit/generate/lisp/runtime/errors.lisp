@@ -17,6 +17,13 @@
   (defparameter *proven* '(optimize (speed 1) (safety 0) (debug 0) (sb-ext:inhibit-warnings 3))
     "How functions are compiled whose every access is known to be safe: messages are checked by their own statements."))
 
+;;; Names that macros make.
+
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (defun named (&rest parts)
+    "The symbol whose name is those of PARTS, one behind the other, whatever *PRINT-CASE* is where this is compiled."
+    (intern (format nil "~{~A~}" (mapcar #'string parts)))))
+
 ;;; Types of the kernels.
 
 (deftype u8 () '(unsigned-byte 8))

@@ -87,7 +87,7 @@ From (< x 0d0) being false it would conclude that x is positive, which holds nei
   "(f64< codec a b) and so on."
   `(progn
      ,@(loop for operator in '(< > = /= <= >=)
-             collect `(defmacro ,(intern (format nil "~A~A" type operator)) (codec left right)
+             collect `(defmacro ,(named type operator) (codec left right)
                         (compared ',operator ',place codec left right)))))
 
 (define-comparisons f64 codec-state-kept-f64)

@@ -2,9 +2,7 @@
 
 (defmacro define-operators (name documentation)
   "(make-NAME &key SLOT ...) for a class of structure-class, and an inline accessor NAME-SLOT for each slot, which boxes no number."
-  (flet ((named (&rest parts)
-           (intern (format nil "~{~A~}" parts)))
-         (keyword (slot)
+  (flet ((keyword (slot)
            (intern (string slot) :keyword)))
     (loop for each in (sb-mop:class-direct-slots (find-class name))
           for slot = (sb-mop:slot-definition-name each)
@@ -32,7 +30,7 @@
 
 (defmacro define-numbers (type width)
   "(f64s old lane first count) is a vector of numbers of a lane, and (append-f64s lane used numbers) puts them behind others there."
-  (let ((name (intern (format nil "~AS" type))) (append (intern (format nil "APPEND-~AS" type))))
+  (let ((name (named type "S")) (append (named "APPEND-" type "S")))
     `(progn
        (defun ,name (old lane first count)
          (declare (type octets lane) (type (unsigned-byte 48) first count))
@@ -66,7 +64,7 @@
 
 (defmacro define-bytes (type)
   "The same of bytes, which may lie in the message."
-  (let ((name (intern (format nil "~AS" type))) (append (intern (format nil "APPEND-~AS" type))))
+  (let ((name (named type "S")) (append (named "APPEND-" type "S")))
     `(progn
        (defun ,name (old lane first count data)
          (declare (type i64 first count))
