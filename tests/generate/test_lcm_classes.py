@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
+from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.build import Wishes, generated
 from tests.generate import cpp
 from tests.generate.driver import answers, harmed
@@ -34,6 +37,8 @@ struct lists_t {
     rj.empty_t none[rows];
     string words[rows][columns];
 }
+struct node_t { int32_t id; int32_t count; rj.node_t kids[count]; string name; }
+struct forest_t { int32_t count; rj.node_t root; rj.node_t trees[count]; rj.node_t two[2]; rj.scale_t scale; }
 struct scale_t { int16_t a; int32_t b; int64_t c; float d; double e; }
 """
 }
@@ -61,6 +66,14 @@ public:
     std::int32_t rows, columns;
     std::vector<item_t> items; std::vector<std::string> names; std::vector<std::vector<double>> table;
     std::vector<scale_t> scales; std::vector<empty_t> none; std::vector<std::vector<std::string>> words;
+};
+class node_t {
+public:
+    std::int32_t id, count; std::vector<node_t> kids; std::string name;
+};
+class forest_t {
+public:
+    std::int32_t count; node_t root; std::vector<node_t> trees; node_t two[2]; scale_t scale;
 };
 }
 """
@@ -98,6 +111,28 @@ def test_lists_are_as_long_as_other_fields_say(tmp_path):
     texts = compared(tmp_path, "rj.lists_t", [lists(*each) for each in ((2, 3), (0, 0), (5, 1), (1, 0), (0, 4), (3, 3))])
     for opened in ("items", "items_many", "table", "table_elements", "scales", "words"):
         assert f" {opened} = rosetta_jit::detail::opened(" in texts["unit.cpp"]
+
+
+@cpp.needs_cpp
+def test_a_member_whose_type_contains_itself(tmp_path):
+    """`rj.forest_t` has a `node_t` as a member: of lcm-gen's classes those alone are never without it."""
+    compared(tmp_path, "rj.forest_t", [forest(*each) for each in ((0, 0), (2, 1), (0, 3), (1, 2))])
+
+
+def test_an_optional_member_whose_type_contains_itself_is_refused():
+    """A class as of LCM cannot be without a member."""
+    schema = 'syntax = "proto3"; package rj; message Node { repeated Node kids = 1; } message Tree { Node root = 1; }'
+    request = type_request("decode", "rj.Tree", {"encoding": "protobuf", "schema": {"t.proto": schema}})
+    with pytest.raises(SchemaError, match="classes of `lcm` have no fields as `root` \\(optional\\)"):
+        generated(request, "cpp", BOTH, "unit", Wishes(holder="lcm", include="t.h"))
+
+
+def forest(count, depth):
+    node = {"id": -1, "count": 0, "kids": [], "name": "leaf"}
+    for level in range(depth):
+        node = {"id": level, "count": 2, "kids": [node, node | {"name": ""}], "name": "n" * 9 * level}
+    scale = {"a": -2, "b": 1 << 30, "c": -(1 << 60), "d": -0.5, "e": 1e-300}
+    return {"count": count, "root": node, "trees": [node] * count, "two": [node] * 2, "scale": scale}
 
 
 def lists(rows, columns):

@@ -64,6 +64,7 @@ def _of_field(walk: Walk, each: Field, name: str, member: Member, element: objec
         return
     assert isinstance(type_, Optional)
     if isinstance(member.slot, Span) and isinstance(walk.unit.schema.resolve(type_.value), Struct):
+        walk.demand("optional clear", spot)
         _link(walk, member.slot, row, spot, f"rosetta_jit::detail::set_bit({around}.presence, {member.presence});")
         return
     there = f"rosetta_jit::detail::is_set({around}.presence, {member.presence})"

@@ -145,7 +145,7 @@ MANNERS = (
     Manners(
         "lcm",
         "the classes that lcm-gen generates",
-        ("fields",),
+        ("fields", "lcm"),
         _joined,
         lambda struct: f"{struct.name.replace('.', '/')}.hpp",
         byte_flags=True,

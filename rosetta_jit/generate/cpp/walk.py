@@ -60,11 +60,15 @@ class Walk:
 
     def text(self, kind: str, spot: Spot, **more: str) -> str:
         """A section, filled in."""
+        return Template(self.demand(kind, spot)).substitute(at=spot.at, object=spot.owner, field=spot.field, **more)
+
+    def demand(self, kind: str, spot: Spot) -> str:
+        """A section; refuses classes that have no such fields."""
         sections = self.manners.sections()
         section = sections.get(f"{kind} {self.direction}", sections.get(kind))
         if section is None:
             raise SchemaError((words.no_manner(self.manners.name, kind, spot.field or spot.at),))
-        return Template(section).substitute(at=spot.at, object=spot.owner, field=spot.field, **more)
+        return section
 
     def lines(self, kind: str, spot: Spot, **more: str) -> None:
         for line in self.text(kind, spot, **more).splitlines():
