@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -45,21 +45,32 @@ def whole(path: Path) -> Generator[Path]:
         try:
             yield part
             part.replace(path)
-        except BaseException:
-            part.unlink(missing_ok=True)
+        except BaseException as error:
+            with suppress(OSError):  # where nothing can be written, there is none
+                part.unlink()
+            if isinstance(error, OSError) and error.filename == str(part):
+                error.filename = str(path)
             raise
 
 
-def folder(path: Path) -> Path:
-    """A folder, made where there is none.
+@contextmanager
+def folder(path: Path) -> Generator[Path]:
+    """A folder, made where there is none; one that was made goes again where something goes wrong.
 
     Raises
     ------
     NotADirectoryError
         Something else has that name.
     """
+    lacking = [each for each in (path, *path.parents) if not each.exists()]
     try:
-        path.mkdir(parents=True, exist_ok=True)
-    except FileExistsError:
-        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(path)) from None
-    return path
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+        except FileExistsError:
+            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(path)) from None
+        yield path
+    except BaseException:
+        for each in lacking:
+            with suppress(OSError):  # somebody else has put something there
+                each.rmdir()
+        raise

@@ -53,6 +53,11 @@ def unusable_name(name: str) -> Diagnostic:
     return error("unusable-name", message, help_=help_)
 
 
+def somebody_elses(path: str) -> Diagnostic:
+    message = f"`{path}` was not made by this command, and would be lost"
+    return error("not-replaced", message, help_="name the files otherwise (--name), put them into another folder (-o), or remove it first")
+
+
 def name_of_a_class(name: str) -> Diagnostic:
     message = f"no namespace can be called as the class `::{name}`"
     return error("unusable-name", message, help_=f"name the files otherwise, as --name {name[:34]}_codec")

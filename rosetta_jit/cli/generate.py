@@ -74,8 +74,9 @@ def run(arguments: argparse.Namespace) -> int:
     _check(arguments)
     texts = _object(arguments) if arguments.emit == "object" else _source(arguments)
     output = Path(cast("str", arguments.output))
+    _keep(output, texts)
     with ExitStack() as files:
-        parts = [files.enter_context(whole(folder((output / name).parent) / Path(name).name)) for name in texts]
+        parts = [files.enter_context(whole(files.enter_context(folder((output / name).parent)) / Path(name).name)) for name in texts]
         for part, (name, text) in zip(parts, texts.items(), strict=True):
             with named(output / name):
                 part.write_bytes(text if isinstance(text, bytes) else text.encode())
@@ -93,6 +94,19 @@ def _check(arguments: argparse.Namespace) -> None:
     meaningless = of_source if arguments.emit == "object" else {"--target": arguments.target, "--cpu": arguments.cpu}
     if wrong := tuple(needless(option, arguments.emit) for option, value in meaningless.items() if value):
         raise SchemaError(wrong)
+
+
+def _keep(output: Path, texts: Mapping[str, str | bytes]) -> None:
+    """Refuse to replace what somebody has written: of files that say who made them, those that are there must say so, too."""
+    from rosetta_jit.catalogue.generate import somebody_elses
+    from rosetta_jit.errors import SchemaError
+    from rosetta_jit.generate.unit import MADE
+
+    said = MADE.encode()
+    ours = [output / name for name, text in texts.items() if isinstance(text, str) and MADE in text.partition("\n")[0]]
+    there = [each for each in ours if each.is_file() and not each.is_symlink()]
+    if lost := tuple(somebody_elses(str(each)) for each in there if said not in each.read_bytes().partition(b"\n")[0]):
+        raise SchemaError(lost)
 
 
 def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:

@@ -239,6 +239,8 @@ def _check_wishes(wishes: Wishes, language: str, known: Mapping[str, Language]) 
         raise SchemaError((words.needless_in("--freestanding", language, others),))
     if wishes.include and (others := of_others(lambda each: each.holders)):
         raise SchemaError((words.needless_in("--include", language, others),))
+    if wishes.holder not in ("", "own") and (others := of_others(lambda each: each.holders)):
+        raise SchemaError((words.needless_in(f"--holder {wishes.holder}", language, others),))
     if not wishes.include.isprintable() or ">" in wishes.include:
         raise SchemaError((words.unusable_header(wishes.include),))
 

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.origins import Origin
     from rosetta_jit.generate.shares import Ways
 
+MADE = "Made by rosetta-jit. Changes will be lost."
+"""The first line of the files of a unit, as a comment: what has it may be replaced."""
+
 Purpose = Literal["decode", "borrow", "encode", "size"]
 """What a kernel does; `borrow` decodes and leaves bytes in the message."""
 

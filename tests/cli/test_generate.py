@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import errno
+import os
+from pathlib import Path
+
 import pytest
 
 from rosetta_jit.cli import main
@@ -50,6 +54,34 @@ def test_a_folder_with_the_name_of_a_file_leaves_everything_as_it_was(tmp_path, 
     assert main([*HEADER, "-o", str(tmp_path)]) == 1
     assert capsys.readouterr().err == f"error: [Errno 21] Is a directory: '{tmp_path}/header.h'\n"
     assert [each.name for each in tmp_path.iterdir()] == ["header.h"]
+
+
+def test_no_folder_is_left_where_nothing_could_be_written(tmp_path, capsys, monkeypatch):
+    """As on a full disk: folders that were there stay, with what is in them."""
+    (tmp_path / "there").mkdir()
+    monkeypatch.setattr(Path, "write_bytes", lambda path, _: refuse(errno.ENOSPC, str(path)))
+    assert main([*HEADER, "--language", "cpp", "-o", f"{tmp_path}/there/a/b"]) == 1
+    assert capsys.readouterr().err == f"error: [Errno 28] No space left on device: '{tmp_path}/there/a/b/header.hpp'\n"
+    assert [*tmp_path.rglob("*")] == [tmp_path / "there"]
+
+
+def refuse(number, path):
+    raise OSError(number, os.strerror(number), path)
+
+
+def test_what_this_command_did_not_make_is_not_replaced(tmp_path, capsys):
+    """A program of somebody's own may be called as a message."""
+    (tmp_path / "header.c").write_text("int main(void) { return 0; }\n")
+    (tmp_path / "notes.txt").write_text("mine")
+    assert main([*HEADER, "-o", str(tmp_path)]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"error[not-replaced]: `{tmp_path}/header.c` was not made by this command, and would be lost\n")
+    assert "--name" in said
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["header.c", "notes.txt"]
+    assert (tmp_path / "header.c").read_text() == "int main(void) { return 0; }\n"
+    for _ in range(2):
+        assert main([*HEADER, "-o", str(tmp_path), "--name", "header_message"]) == 0
+    assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
 @pytest.mark.parametrize("below", ["", "/inner"])

@@ -404,7 +404,9 @@ def test_types_have_classes_of_their_own_framework(type_, encoding):
 
 REFUSED = {
     "--language cpp --holder dds": "error[unknown-holder]",
-    "--holder protobuf": "error[unknown-holder]",
+    "--holder protobuf": "`--holder protobuf` says nothing about source in `c`\n  = help: leave it out, or choose --language cpp",
+    "--language lisp --holder ros1": "`--holder ros1` says nothing about source in `lisp`",
+    "--language python --holder ros1": "`--holder ros1` says nothing about source in `python`",
     "--language cpp --holder yarp --directions decode": "`encode` is not among the directions",
     "--language cpp --holder yarp --directions encode": "`decode` is not among the directions",
     "--emit object --holder own": "`--holder` says nothing about `--emit object`",

@@ -9,8 +9,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
-from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.build import Wishes, generated
+from rosetta_jit.generate.build import generated
 from rosetta_jit.generate.c.lanes import Lane
 from rosetta_jit.generate.lisp.lanes import lanes_of
 from rosetta_jit.generate.lisp.language import codec
@@ -158,11 +157,6 @@ def test_a_unit_may_have_many_lanes(tmp_path):
     (tmp_path / "lanes.lisp").write_text(f"(in-package :runtime)\n{codec(lanes)}(print (length (codec.field-399 (make-codec))))\n")
     forms = [*lisp.begun(), '(load-source "lanes.lisp")']
     assert lisp.run(*forms, cwd=tmp_path).split() == ["0"]
-
-
-def test_classes_are_the_systems_own():
-    with pytest.raises(SchemaError, match="unknown-holder"):
-        generated(TORSO, "lisp", BOTH, "torso", Wishes(holder="protobuf"))
 
 
 @lisp.needs_sbcl

@@ -310,11 +310,6 @@ def test_integers_that_their_fields_cannot_hold(type_, value):
             unit.encode(made(**{name: value}))
 
 
-def test_classes_are_the_modules_own():
-    with pytest.raises(SchemaError, match="unknown-holder"):
-        generated(TORSO, "python", BOTH, "torso", Wishes(holder="protobuf"))
-
-
 def test_what_the_host_tells():
     """Messages are counted by the module, decoded and encoded ones together."""
     schema = {

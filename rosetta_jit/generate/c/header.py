@@ -13,7 +13,7 @@ from rosetta_jit.generate.c.rows import Member, SpanType, Struct
 from rosetta_jit.generate.c.state import state_struct
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_ROWS, C_TYPES
-from rosetta_jit.generate.unit import Purpose, Unit, kind_of, wire_of
+from rosetta_jit.generate.unit import MADE, Purpose, Unit, kind_of, wire_of
 
 STATUSES = ("ok", "full", *get_args(Kind))
 
@@ -57,7 +57,7 @@ def header(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], hidden: int) -
 
 def made(unit: Unit) -> str:
     """Comments that say from what the file was made."""
-    lines = ("Made by rosetta-jit. Changes will be lost.", *unit.made_from)
+    lines = (MADE, *unit.made_from)
     return "\n".join(map(comment, lines))
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from rosetta_jit.catalogue import generate as words
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.functions import Printed, print_kernel
 from rosetta_jit.generate.c.header import header
 from rosetta_jit.generate.c.lanes import Dialect, Lanes
@@ -34,8 +32,6 @@ class Parts:
 
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the files by their names."""
-    if unit.holder not in ("", "own"):
-        raise SchemaError((words.unknown_holder(unit.holder, (("own", "structs over lanes"),)),))
     unit = without_clearing(unit)
     return as_c(unit, lambda kernel, lanes, role: print_kernel(kernel, lanes, role, unit.origins.get(role, ())))
 

@@ -6,8 +6,6 @@ import re
 from collections.abc import Iterator, Sequence
 from string import Template
 
-from rosetta_jit.catalogue import generate as words
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.lisp.classes import classes_of, definitions, function_symbols, wire_symbols
 from rosetta_jit.generate.lisp.functions import About, Printed, computes_with_floats, print_kernel
@@ -17,7 +15,7 @@ from rosetta_jit.generate.lisp.objects import Put, Take
 from rosetta_jit.generate.lisp.texts import comment, literal
 from rosetta_jit.generate.lisp.words import API, package_of, runtime_text
 from rosetta_jit.generate.shares import changed_lanes
-from rosetta_jit.generate.unit import Role, Unit, wire_of
+from rosetta_jit.generate.unit import MADE, Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel, Part, Site
 from rosetta_jit.kernel.traits import asks_host
 from rosetta_jit.startup.dataclass import replace
@@ -35,8 +33,6 @@ NAMES: dict[Role, str] = {"borrow": "decode", "encode": "encode", "size": "size"
 
 def files(unit: Unit) -> dict[str, str]:
     """The texts of the system's files by their names."""
-    if unit.holder not in ("", "own"):
-        raise SchemaError((words.unknown_holder(unit.holder, (("own", "classes"),)),))
     package = package_of(unit.name)
     made = _Source(unit)
     return {
@@ -75,7 +71,7 @@ class _Source:
 
     def head(self) -> str:
         """What the file was made from."""
-        said = ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
+        said = (MADE, *self.unit.made_from)
         return "".join(f";;; {'  ' * line.startswith(' ')}{comment(line)}\n" for line in said) + "\n"
 
     def text(self, package: str) -> str:

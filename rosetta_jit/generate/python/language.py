@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.catalogue import generate as words
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.unit_lanes import named_lanes
 from rosetta_jit.generate.python.decoding.decoder import print_decoder, taken_lanes
@@ -22,7 +20,7 @@ from rosetta_jit.generate.python.printing.printed import Objects
 from rosetta_jit.generate.python.printing.scope import CODES, TRUTH, Scope, view_name
 from rosetta_jit.generate.python.support import mentioned, needed, support
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
-from rosetta_jit.generate.unit import Role, Unit, wire_of
+from rosetta_jit.generate.unit import MADE, Role, Unit, wire_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Const, Direction, Return
 from rosetta_jit.kernel.traits import asks_host
@@ -39,8 +37,6 @@ NO_MEMORY = "the message asks for more memory than its size allows"
 
 def files(unit: Unit) -> dict[str, str]:
     """The text of the module by its name."""
-    if unit.holder not in ("", "own"):
-        raise SchemaError((words.unknown_holder(unit.holder, (("own", "dataclasses"),)),))
     return {f"{unit.name}.py": _Module(unit).text()}
 
 
@@ -61,9 +57,7 @@ class _Module:
         parts += [self._decoder_of(wire, role) for wire, role in wires_of(self.unit).items()]
         parts += [self._encoder()] if "encode" in self.unit.kernels else []
         parts += [self._reset()] if self.unit.state else []
-        made = "\n".join(
-            f"# {ascii(' '.join(line.split()))[1:-1]}" for line in ("Made by rosetta-jit. Changes will be lost.", *self.unit.made_from)
-        )
+        made = "\n".join(f"# {ascii(' '.join(line.split()))[1:-1]}" for line in (MADE, *self.unit.made_from))
         printed, declared = "\n\n\n".join(parts), classes(self.unit).rstrip()
         named = mentioned(f"{declared}\n{printed}")
         constants = needed(self._constants(), named)
