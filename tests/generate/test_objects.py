@@ -43,6 +43,20 @@ def test_an_object_answers_as_the_library_does(name, tmp_path):
     assert found == [expected(decode, encode, message) for message in messages]
 
 
+@needs_gcc
+def test_the_header_is_one_of_c_plus_plus_too_and_says_that_its_implementation_is_not(tmp_path):
+    write(tmp_path, object_of(TORSO, BOTH, "torso", binding.get_default_triple()))
+    (tmp_path / "main.cpp").write_text(
+        '#include "torso.h"\ntorso_status is_there(torso_holder &holder) { return torso_size(&holder, nullptr, nullptr); }\n'
+    )
+    command = ["gcc", "-std=c++17", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only", "main.cpp"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    refused = subprocess.run([*command, "-DTORSO_IMPLEMENTATION"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert refused.returncode != 0
+    assert "what follows is C: define TORSO_IMPLEMENTATION in a file of C" in refused.stderr
+    assert refused.stderr.count("error:") == 1
+
+
 @pytest.mark.parametrize("triple", MACHINES)
 def test_objects_of_other_machines_need_nothing_of_cpython(triple):
     texts = object_of(TORSO, ("decode",), "torso", triple)

@@ -40,7 +40,8 @@ def files_for(unit: Unit, triple: str, cpu: str) -> dict[str, str | bytes]:
     header, source = texts[f"{unit.name}.h"], texts[f"{unit.name}.c"]
     calls = source.replace(f'#include "{unit.name}.h"\n', "")
     macro = f"{unit.name.upper()}_IMPLEMENT"
-    guarded = f"#if defined({macro}ATION) && !defined({macro}ED)\n#define {macro}ED\n\n{calls}\n#endif\n"
+    refused = f'#ifdef __cplusplus\n#error "what follows is C: define {macro}ATION in a file of C"\n#else\n'
+    guarded = f"#if defined({macro}ATION) && !defined({macro}ED)\n#define {macro}ED\n{refused}\n{calls}\n#endif\n#endif\n"
     return {f"{unit.name}.h": f"{header}\n{guarded}", f"{unit.name}.o": code}
 
 
