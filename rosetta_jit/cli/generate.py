@@ -151,10 +151,10 @@ def _usual_name(subject: str, language: str) -> str:
     ``std_msgs_string``.
     """
     from rosetta_jit.generate.build import HEADERS
-    from rosetta_jit.generate.languages import installed
+    from rosetta_jit.generate.languages import language_named
 
     parts = re.split(r"[./:]+", subject.removesuffix(".mapping"))
     names = [re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", part).lower() for part in parts]
-    known = installed().get(language)
+    known = language_named(language)
     is_usable = names[-1] not in HEADERS and (known is None or known.may_name(names[-1]))
     return names[-1] if is_usable else "_".join(names[-2:])

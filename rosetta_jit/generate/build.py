@@ -10,7 +10,7 @@ from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import MappingError, SchemaError
 from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.inner_types import with_inner_types
-from rosetta_jit.generate.languages import Language, installed
+from rosetta_jit.generate.languages import Language, installed, language_named
 from rosetta_jit.generate.origins import Origin, origins_of
 from rosetta_jit.generate.unit import Role, Unit, UserFunction, wire_of
 from rosetta_jit.kernel.ir import Kernel
@@ -227,20 +227,20 @@ def _machine(language: Language) -> type[AheadOfTime]:
     return LowByteFirst if language.low_byte_first else AheadOfTime
 
 
-def _check_wishes(wishes: Wishes, language: str, known: Mapping[str, Language]) -> None:
+def _check_wishes(wishes: Wishes, language: Language) -> None:
     """Refuse what a language cannot do, or has no meaning in it."""
 
     def of_others(can: Callable[[Language], bool]) -> tuple[str, ...]:
-        return () if can(known[language]) else tuple(name for name, each in known.items() if can(each))
+        return () if can(language) else tuple(name for name, each in installed().items() if can(each))
 
     if wishes.numpy and (others := of_others(lambda each: each.numpy)):
-        raise SchemaError((words.no_numpy(language, others),))
+        raise SchemaError((words.no_numpy(language.name, others),))
     if wishes.freestanding and (others := of_others(lambda each: each.freestanding)):
-        raise SchemaError((words.needless_in("--freestanding", language, others),))
+        raise SchemaError((words.needless_in("--freestanding", language.name, others),))
     if wishes.include and (others := of_others(lambda each: each.holders)):
-        raise SchemaError((words.needless_in("--include", language, others),))
+        raise SchemaError((words.needless_in("--include", language.name, others),))
     if wishes.holder not in ("", "own") and (others := of_others(lambda each: each.holders)):
-        raise SchemaError((words.needless_in(f"--holder {wishes.holder}", language, others),))
+        raise SchemaError((words.needless_in(f"--holder {wishes.holder}", language.name, others),))
     if not wishes.include.isprintable() or ">" in wishes.include:
         raise SchemaError((words.unusable_header(wishes.include),))
 
@@ -266,14 +266,13 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     MappingError, SchemaError
         The mapping or type has mistakes, there is no such language, or it cannot say what the kernels do.
     """
-    known = installed()
-    if language not in known:
-        raise SchemaError((words.unknown_language(language, tuple(known)),))
-    if not known[language].may_name(name):
+    chosen = language_named(language)
+    if chosen is None:
+        raise SchemaError((words.unknown_language(language, tuple(installed())),))
+    if not chosen.may_name(name):
         raise SchemaError((words.unusable_name(name),))
-    _check_wishes(wishes, language, known)
+    _check_wishes(wishes, chosen)
     with within_stack():
-        machine = _machine(known[language])
-        wanted = _of_wires(request, roles) if known[language].wires else roles
-        unit = unit_of(request, known[language].roles(wanted), name, wishes, machine, known[language].shown)
-        return known[language].files(unit)
+        wanted = _of_wires(request, roles) if chosen.wires else roles
+        unit = unit_of(request, chosen.roles(wanted), name, wishes, _machine(chosen), chosen.shown)
+        return chosen.files(unit)

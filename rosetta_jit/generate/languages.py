@@ -7,6 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.entry_points import offered
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
@@ -121,8 +122,13 @@ LANGUAGES = (
 
 @cache
 def installed() -> Mapping[str, Language]:
-    """Every language by name: ours, and those of installed packages."""
-    from importlib.metadata import entry_points
+    """Every language by name: ours, whose place none takes, and those of installed packages."""
+    offers = [cast("Language", each.load()) for each in offered(GROUP)]
+    ours = {each.name: each for each in LANGUAGES}
+    return ours | {each.name: each for each in offers if each.name not in ours}
 
-    offered = (cast("Language", each.load()) for each in entry_points(group=GROUP))
-    return {language.name: language for language in (*LANGUAGES, *offered)}
+
+def language_named(name: str) -> Language | None:
+    """The language of a name, or None. Packages are looked at where it is none of ours: one that is broken says nothing about others."""
+    ours = next((each for each in LANGUAGES if each.name == name), None)
+    return ours or installed().get(name)

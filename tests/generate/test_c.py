@@ -390,16 +390,29 @@ def files(unit):
 """
 
 
+def offers(folder, line, monkeypatch, text=TOY):
+    """A package with a language."""
+    (folder / "toy_language.py").write_text(text)
+    (folder / "toy-1.dist-info").mkdir()
+    (folder / "toy-1.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: toy\nVersion: 1\n")
+    (folder / "toy-1.dist-info" / "entry_points.txt").write_text(f"[rosetta_jit.languages]\n{line}\n")
+    monkeypatch.syspath_prepend(str(folder))
+
+
 @pytest.mark.usefixtures("offers_anew")
 def test_a_language_from_another_package(tmp_path, monkeypatch):
-    (tmp_path / "toy_language.py").write_text(TOY)
-    (tmp_path / "toy-1.dist-info").mkdir()
-    (tmp_path / "toy-1.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: toy\nVersion: 1\n")
-    (tmp_path / "toy-1.dist-info" / "entry_points.txt").write_text("[rosetta_jit.languages]\ntoy = toy_language:TOY\n")
-    monkeypatch.syspath_prepend(str(tmp_path))
+    offers(tmp_path, "toy = toy_language:TOY", monkeypatch)
     assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "--language", "toy", "-o", str(tmp_path)]) == 0
     made = json.loads((tmp_path / "joint_state.json").read_text())
     assert made == dict.fromkeys(("decode", "encode", "size"), "sensor_msgs/JointState")
+
+
+@pytest.mark.usefixtures("offers_anew")
+@pytest.mark.parametrize("line", ["c = toy_language:TOY", "broken = no_such_module:TOY"])
+def test_no_package_takes_the_place_of_our_languages_or_stops_them(line, tmp_path, monkeypatch):
+    offers(tmp_path, line, monkeypatch, TOY.replace('"toy"', '"c"'))
+    assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "-o", str(tmp_path)]) == 0
+    assert (tmp_path / "joint_state.h").exists()
 
 
 def test_capacities_are_what_the_schema_bounds():
