@@ -23,6 +23,7 @@ from rosetta_jit.generate.lisp.words import runtime_names, symbols
 from rosetta_jit.model.types import Ref
 from tests.generate import cpp, driver, lisp, native, python
 from tests.generate.python import module
+from tests.generate.test_cpp import same
 from tests.runtime.test_shipped_growth import likely
 
 if TYPE_CHECKING:
@@ -306,3 +307,38 @@ def test_units_are_not_called_as_words_of_their_language(type_, language, file, 
     assert (file.split(".")[0] == word) == ("unusable-name" not in capsys.readouterr().err)
     if language == "cpp" and shutil.which("g++") is not None:
         cpp.compiled("g++", tmp_path, file.removesuffix(".cpp"))
+
+
+CALLED_AS_TYPES = """part part
+part[] parts
+other[2] other
+outer3 outer3
+""" + "".join(
+    f"{'=' * 80}\nMSG: t/{name}\n{fields}"
+    for name, fields in {
+        "part": "int16 part\nother other\nint8 unit\n",
+        "other": "int8 x\npart3 part3\n",
+        "part3": "int8 outer\n",
+        "outer3": "int16[] part\n",
+    }.items()
+)
+
+
+@cpp.needs_cpp
+def test_fields_are_called_as_their_types_in_cpp(tmp_path):
+    """As those of bottles within bottles are: the name of a member does not depend on how many stand before it."""
+    options = {"encoding": "ros1", "schema": CALLED_AS_TYPES}
+    texts = generated(type_request("decode", "t/outer", options), "cpp", BOTH, "unit")
+    for member in (
+        "::unit::part part{};",
+        "std::vector<::unit::part> parts;",
+        "std::array<::unit::other, 2> other{};",
+        "::unit::other other{};",
+    ):
+        assert f"    {member}\n" in texts["unit.hpp"]
+    made = cpp.program(tmp_path, cpp.write(tmp_path, texts), options=cpp.WATCHED)
+    inner = {"part": -2, "other": {"x": 3, "part3": {"outer": 4}}, "unit": 5}
+    value = {"part": inner, "parts": [inner] * 2, "other": [inner["other"]] * 2, "outer3": {"part": [1, -1]}}
+    decode, encode = (of("t/outer", **options) for of in (rj.Decoder.of, rj.Encoder.of))
+    messages = driver.harmed([bytes(encode(value))], 20, "called as types")
+    same(driver.answers(made, messages), decode, encode, messages)

@@ -52,9 +52,10 @@ def _enum(identifier: str, enum: Enum, unit: str) -> str:
 def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: frozenset[str], unit: str) -> str:
     from rosetta_jit.generate.cpp.names import member_names
 
-    lines = [comment(struct.name), f"struct {identifier} {{"]
-    for field, member in zip(struct.fields, member_names(struct, unit, names.values()), strict=True):
-        kind = _type(field.type, names, recursive)
+    lines, members = [comment(struct.name), f"struct {identifier} {{"], member_names(struct, unit, identifier)
+    named = {name: f"::{unit}::{each}" if each in members else each for name, each in names.items()}
+    for field, member in zip(struct.fields, members, strict=True):
+        kind = _type(field.type, named, recursive)
         is_bare = isinstance(field.type, Bool | Int | Float | Ref) or kind.startswith("std::array")
         zero = "{}" if is_bare and not kind.startswith("std::unique") else ""
         said = " ".join(part for part in (field.doc, f"[{field.unit}]" if field.unit else "") if part)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.model.types import Struct
@@ -13,7 +11,7 @@ NOT_NAMESPACES = RESERVED | {"main", "std", "rosetta_jit"}
 """What no unit may be called: its namespace is called so."""
 
 
-def member_names(struct: Struct, unit: str, classes: Iterable[str]) -> tuple[str, ...]:
-    """Those of a struct's fields, in order: each another, none a word of C++ or one of the unit's classes."""
-    scope = Namespace(RESERVED | OWN_WORDS | of_unit(unit, (each.name for each in struct.fields)).union(classes))
+def member_names(struct: Struct, unit: str, class_: str) -> tuple[str, ...]:
+    """Those of a struct's fields, in order: each another, none a word of C++ or the struct's own class."""
+    scope = Namespace(RESERVED | OWN_WORDS | {class_} | of_unit(unit, (each.name for each in struct.fields)))
     return tuple(scope.identifier(each.name) for each in struct.fields)

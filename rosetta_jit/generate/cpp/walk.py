@@ -81,7 +81,7 @@ class Walk:
     def names(self, struct: Struct) -> tuple[str, ...]:
         """The names of a struct's fields as the class has them."""
         if self.manners.type is None:
-            return member_names(struct, self.unit.name, names_of(self.unit).values())
+            return member_names(struct, self.unit.name, names_of(self.unit)[struct.name])
         unions = {each.name for each in struct.fields if isinstance(self.unit.schema.resolve(each.type), Union)}
         return tuple(self.named(each.name, struct.name, is_union=each.name in unions) for each in struct.fields)
 
