@@ -281,6 +281,8 @@ def test_objects_that_cannot_be_written(tmp_path):
     forms += [
         "(handler-case (joints:make-header :seq -1) (type-error () (print :type-error)))",
         refused("(joints:encode (joints:make-joint-state :name (vector 1)))", "(message-error-kind found)"),
+        refused('(joints:encode (joints:make-joint-state :name (vector "a" \'b)))'),
+        refused("(joints:encode (joints:make-joint-state :header (joints:make-header :frame-id (string (code-char #xd800)))))"),
         refused("(joints:encode (joints:make-joint-state :name (vector (string (code-char #xd800)))))"),
         "(print (length (joints:encode (joints:make-joint-state))))",
         "(print (joints:message-size (joints:make-joint-state)))",
@@ -289,7 +291,9 @@ def test_objects_that_cannot_be_written(tmp_path):
     assert lisp.run(*forms, cwd=tmp_path).splitlines()[1:] == [
         ":TYPE-ERROR ",
         ":RANGE ",
-        '"range: U+D800 is no character" ',
+        '"range at .name[1]: B is not of type STRING" ',
+        '"range at .header.frame_id: U+D800 is no character" ',
+        '"range at .name[0]: U+D800 is no character" ',
         "32 ",
         "32 ",
         '"length at .header.seq: no room for the message" ',

@@ -51,9 +51,10 @@ Signals DECODE-ERROR, and changes nothing then. What arrays hold that several wi
   (declare (type codec codec))
   (setf (codec-state-most codec) most-positive-fixnum$empty)
   (fill (codec.message codec) 0)
-  (handler-case ($put codec 0 object)
-    (type-error (condition)
-      (error 'encode-error :kind :range :path "" :detail (remove #\Newline (princ-to-string condition)))))
+  (let ((*where* '()))
+    (handler-case ($put codec 0 object)
+      (type-error (condition) (unfit (misfit condition)))
+      (encode-error (condition) (unfit (message-error-detail condition)))))
   $tell)
 
 (defun size-of-rows (codec)

@@ -8,11 +8,14 @@ There are two such functions for each struct in the layout; in a row, ``row`` is
 
 from __future__ import annotations
 
+from collections.abc import Generator
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.lisp.classes import ABSENT_BOOL, UNKNOWN, Classes
 from rosetta_jit.generate.lisp.expressions import access, row_start
 from rosetta_jit.generate.lisp.lines import Lines
+from rosetta_jit.generate.lisp.texts import literal
 from rosetta_jit.generate.shares import WHOLE, Ways, within
 from rosetta_jit.model.layout import Member, Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bool, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union
@@ -189,21 +192,50 @@ class Put(Walk):
         with self.lines.form(f"(defun {name} (codec row object)"):
             type_, row = self.classes.types[struct.name], "row" if lane else "0"
             self.lines.line(f"(declare (type codec codec) (type fixnum row) (type {type_} object) (ignorable codec row object))")
-            for each, member in zip(struct.fields, slot.members, strict=True):
-                place = self.classes.accessor(struct, each.name)
-                if member.presence is None:
-                    self.value(each.type, member.slot, lane, row, place, each.name)
-                    continue
-                assert isinstance(each.type, Optional)
-                word, bit = divmod(member.presence, 64)
-                is_bool = isinstance(self.resolved(each.type.value), Bool)
-                there = f"(not (eq value {ABSENT_BOOL}))" if is_bool else "value"
-                with self.lines.form(f"(let ((value {place}))"), self.lines.form(f"(when {there}"):
-                    self.lines.line(f"(set-bit {self.lanes.place(lane)} {self.at(lane, slot.offset + 8 * word, 'u64', row)} {bit})")
-                    self.value(each.type.value, member.slot, lane, row, "value", each.name)
-            if slot.unknown is not None:
-                self.sequence(Bytes(), slot.unknown, lane, row, self.classes.accessor(struct, UNKNOWN), "")
-            self.lines.line("object")
+            with self.reporting(self.is_sure(Ref(struct.name), slot)):
+                self.fields(struct, slot, lane, row)
+                self.lines.line("object")
+
+    @contextmanager
+    def reporting(self, is_sure: bool) -> Generator[None]:
+        """Around statements that say which field comes next, where there are some that may fail."""
+        with ExitStack() as forms:
+            if not is_sure:
+                forms.enter_context(self.lines.form('(let ((where ""))'))
+                forms.enter_context(self.lines.form("(reporting where"))
+            yield
+
+    def is_sure(self, type_: Type, slot: Slot) -> bool:
+        """Whether the type of an object's slot says that all of it can be written."""
+        resolved = self.resolved(type_.value if isinstance(type_, Optional) else type_)
+        match resolved, slot:
+            case (_, Number()) | (Bytes(), Span()):
+                return True
+            case Struct(), Row(members=members):
+                return all(self.is_sure(each.type, member.slot) for each, member in zip(resolved.fields, members, strict=True))
+            case Array(), Span(_, own):
+                return isinstance(self.element(own), Number)
+            case _:
+                return False
+
+    def fields(self, struct: Struct, slot: Row, lane: int, row: str) -> None:
+        """All fields of an object."""
+        for each, member in zip(struct.fields, slot.members, strict=True):
+            place = self.classes.accessor(struct, each.name)
+            if not self.is_sure(each.type, member.slot):
+                self.lines.line(f"(setf where {literal(f'.{each.name}')})")
+            if member.presence is None:
+                self.value(each.type, member.slot, lane, row, place, each.name)
+                continue
+            assert isinstance(each.type, Optional)
+            word, bit = divmod(member.presence, 64)
+            is_bool = isinstance(self.resolved(each.type.value), Bool)
+            there = f"(not (eq value {ABSENT_BOOL}))" if is_bool else "value"
+            with self.lines.form(f"(let ((value {place}))"), self.lines.form(f"(when {there}"):
+                self.lines.line(f"(set-bit {self.lanes.place(lane)} {self.at(lane, slot.offset + 8 * word, 'u64', row)} {bit})")
+                self.value(each.type.value, member.slot, lane, row, "value", each.name)
+        if slot.unknown is not None:
+            self.sequence(Bytes(), slot.unknown, lane, row, self.classes.accessor(struct, UNKNOWN), "")
 
     def value(self, type_: Type, slot: Slot, lane: int, row: str, at: str, path: str) -> None:
         """A value of an object."""
@@ -262,7 +294,7 @@ class Put(Walk):
         with self.lines.form(f"(let* (({all_} {at}) ({first} {self.lanes.place_of_used(slot.lane)}))"):
             self.lines.line(f"(declare (type simple-vector {all_}))")
             self.span(slot, lane, row, f"append-rows (length {all_}) {stride}")
-            with self.lines.form(f"(dotimes ({index} (length {all_}))"):
+            with self.lines.form(f"(dotimes ({index} (length {all_}))"), self.lines.form(f"(reporting-element {index}"):
                 self.value(
                     inner,
                     self.element(slot.lane),
@@ -284,8 +316,9 @@ class Put(Walk):
             self.lines.line(f"(declare (type hash-table {table}) (type fixnum {index}))")
             self.span(slot, lane, row, f"append-rows (hash-table-count {table}) {stride}")
             with self.lines.form(f"(loop for {own[0]} being the hash-keys of {table} using (hash-value {own[1]}) do"):
-                for each, member, name in zip(entry.fields, element.members, own, strict=True):
-                    self.value(each.type, member.slot, slot.lane, row_start(stride, index), name, f"{path}-{each.name}")
+                with self.lines.form(f"(reporting-element {own[0]}"):
+                    for each, member, name in zip(entry.fields, element.members, own, strict=True):
+                        self.value(each.type, member.slot, slot.lane, row_start(stride, index), name, f"{path}-{each.name}")
                 self.lines.line(f"(incf {index})")
         self.depth -= 1
 

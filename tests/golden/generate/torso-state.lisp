@@ -280,9 +280,10 @@ Signals DECODE-ERROR. With a codec and an object that are used again, numbers ar
         (codec.unknown-used codec) 0
         (codec.angles-used codec) 0)
   (fill (codec.message codec) 0)
-  (handler-case (put-message codec 0 object)
-    (type-error (condition)
-      (error 'encode-error :kind :range :path "" :detail (remove #\Newline (princ-to-string condition))))))
+  (let ((*where* '()))
+    (handler-case (put-message codec 0 object)
+      (type-error (condition) (unfit (misfit condition)))
+      (encode-error (condition) (unfit (message-error-detail condition))))))
 
 (defun size-of-rows (codec)
   (or (with-floats (attempts codec #'size-kernel (load-time-value (no-octets) t) (ash 1 60) 1))

@@ -112,6 +112,29 @@
 
 ;;; From objects to rows.
 
+(defvar *where* '() "The way to a value that cannot be written, from the outside in.")
+
+(defmacro reporting (where &body body)
+  "Forms that write a part of an object: of an error in them *WHERE* tells it."
+  `(handler-bind ((error (lambda (condition)
+                           (declare (ignore condition))
+                           (push ,where *where*))))
+     ,@body))
+
+(defmacro reporting-element (index &body body)
+  "The same of an element of a vector, or of an entry of a hash table."
+  (let ((own (gensym "INDEX")))
+    `(let ((,own ,index))
+       (reporting (format nil "[~S]" ,own) ,@body))))
+
+(defun misfit (condition)
+  "What a type error says, in a line."
+  (let ((*print-pretty* nil) (*print-length* 8) (*print-level* 3))
+    (format nil "~S is not of type ~S" (type-error-datum condition) (type-error-expected-type condition))))
+
+(defun unfit (detail)
+  (error 'encode-error :kind :range :path (format nil "~{~A~}" *where*) :detail detail))
+
 (defun append-rows (lane used count stride)
   "More rows, filled with 0."
   (declare (type octets lane) (type fixnum used count stride))
