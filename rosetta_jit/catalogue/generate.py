@@ -48,7 +48,8 @@ def of_another_framework(holder: str, type_: str, framework: str, known: Sequenc
 
 
 def unusable_name(name: str) -> Diagnostic:
-    help_ = "letters, digits and underscores, of which a letter comes first, up to 40; no header of C, and no word of the language"
+    rule = "letters, digits and underscores, of which a letter comes first, up to 40; no header of C, and no word of the language"
+    help_ = f"choose another --name: {rule}"
     message = f"`{name}` cannot begin the names of functions"
     return error("unusable-name", message, help_=help_)
 

@@ -91,10 +91,10 @@ def unit_of(
     MappingError, SchemaError
         The mapping or type has mistakes, or needs what generated source cannot have.
     """
+    builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
+    kernels = _kernels(builds)  # of what does not exist, it is not the name that is wrong
     if not NAME.fullmatch(name) or name in HEADERS:
         raise SchemaError((words.unusable_name(name),))
-    builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
-    kernels = _kernels(builds)
     _check(kernels, freestanding=wishes.freestanding)
     first = next(iter(builds.values()))
     bounds, functions = _bounds(first, kernels), _functions(first, kernels)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 from pathlib import Path
 
 import pytest
 
 from rosetta_jit.cli import main
 
+MAPPINGS = Path(__file__).resolve().parents[2] / "mappings"
 HEADER = ["generate", "std_msgs/Header", "--encoding", "ros1"]
 MACHINES = [
     (["--target", "x86_64-linux-gnu", "--cpu", "cortex-m7"], "LLVM knows no processor `cortex-m7` of it"),
@@ -109,6 +111,21 @@ def test_files_declare_a_type(tmp_path, capsys):
     assert "error[unknown-type]" in capsys.readouterr().err
     assert main([*command, "--import", str(tmp_path / "lab.proto")]) == 0
     assert "class Arm:" in (tmp_path / "arm.py").read_text()
+
+
+@pytest.mark.parametrize("file", ["my-arm", "a state whose name is longer than that of most others"])
+def test_the_name_of_a_mapping_becomes_one_of_files(file, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path(f"{file}.mapping").write_text((MAPPINGS / "yarp/icub/torso_state.mapping").read_text())
+    assert main(["generate", f"{file}.mapping", "--encoding", "yarp3", "-o", "made"]) == 0, capsys.readouterr().err
+    name = re.sub(r"\W", "_", file)[:40]
+    assert sorted(each.name for each in Path("made").iterdir()) == [f"{name}.c", f"{name}.h"]
+
+
+@pytest.mark.parametrize("type_", ["", ".", "lab.Nothing"])
+def test_a_type_that_there_is_not_is_what_is_wrong(type_, tmp_path, capsys):
+    assert main(["generate", type_, "--framework", "protobuf", "-o", str(tmp_path)]) == 1
+    assert f"error[unknown-type]: no file declares a message `{type_}`" in capsys.readouterr().err
 
 
 def test_mappings_import_by_themselves(tmp_path, capsys):

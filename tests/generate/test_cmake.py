@@ -30,21 +30,25 @@ add_executable(node main.cpp)
 target_link_libraries(node messages)
 rosetta_generate(node sensor_msgs/JointState ENCODING cdr NAME joints BYTE_ORDER big LENIENT bool trailing)
 rosetta_generate(node lab.Arm NAME lab_arm IMPORTS lab.proto)
+rosetta_generate(node the-torso.mapping ENCODING yarp3)
 """
 SCHEMA = 'syntax = "proto3"; package lab; message Arm { uint32 joints = 1; }'
 MAIN = """
 #include "lab_arm.hpp"
 #include "joints.hpp"
 #include "nav_sat_fix_utm.h"
+#include "the_torso.hpp"
 #include "torso_state.hpp"
 #include <cstdio>
 extern "C" int own(void);
 int main()
 {
+    the_torso::codec torso;
     joints::JointState empty;
     lab_arm::Arm six;
     six.joints = 6;
     std::printf("%zu ", lab_arm::codec().encode(six).size());
+    static_cast<void>(torso);
     const auto is_little = static_cast<std::size_t>(joints::codec().encode(empty)[1]);
     std::printf("%d %zu %s\\n", own(), is_little, nav_sat_fix_utm_status_text(NAV_SAT_FIX_UTM_OK));
     return torso_state::codec().try_size(torso_state::JointAngles()).has_value();
@@ -58,6 +62,7 @@ OWN = "int own(void) { typeof(1) extension_of_gnu = 7; return extension_of_gnu; 
 )
 def test_a_project_of_others(tmp_path):
     """Libraries are linked without keywords, C has extensions, the target is exported, and two languages are generated for it."""
+    shutil.copy(CMAKE.parents[2] / "mappings/yarp/icub/torso_state.mapping", tmp_path / "the-torso.mapping")
     for name, text in (("CMakeLists.txt", PROJECT), ("main.cpp", MAIN), ("own.c", OWN), ("lab.proto", SCHEMA)):
         (tmp_path / name).write_text(text)
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
