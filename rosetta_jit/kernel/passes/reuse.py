@@ -8,7 +8,7 @@ as they are.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from itertools import count
 
@@ -81,19 +81,29 @@ class _Known:
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """The variables of a body, the names that are taken in the kernel, those made here, and the memory that each routine writes."""
+    """The variables of a body, the names that are taken in the kernel, those made here, and the memory that each routine writes.
+
+    ``lets`` are the statements that name what the statement that is looked at is the first to read.
+    """
 
     variables: set[str]
     taken: set[str]
     written: Mapping[str, set[_Bytes]]
     made: set[str] = field(default_factory=set[str])
     numbers: Iterator[int] = field(default_factory=lambda: count(1))
+    lets: list[Stmt] = field(default_factory=list["Stmt"])
 
     def fresh(self) -> str:
         name = next(name for number in self.numbers if (name := f"read_{number}") not in self.taken)
         self.taken.add(name)
         self.made.add(name)
         return name
+
+    def taken_lets(self) -> Block:
+        """The ``lets``, of which none is left."""
+        lets = tuple(self.lets)
+        self.lets.clear()
+        return lets
 
 
 def reuse(kernel: Kernel) -> Kernel:
@@ -110,30 +120,29 @@ def _body(body: Block, taken: set[str], written: Mapping[str, set[_Bytes]]) -> B
     if len(set(reads)) == len(reads):
         return body
     names = _Names(changed_names(body), taken, written)
-    named = _block(body, _Known(), names)
-    uses = Counter([part.name for part in parts_of(flat(named)) if type(part) is Local])
+    known = _Known()
+    result = _block(body, known, names, _naming(known, names))
+    uses = Counter([part.name for part in parts_of(flat(result)) if type(part) is Local])
     single = {name for name in names.made if uses[name] == 1}
-    return _inlined(named, names.made, single, {}) if single else named
+    return _inlined(result, names.made, single, {}) if single else result
 
 
 # --- names for reads ---------------------------------------------------------------------------------------------------
 
 
-def _block(block: Block, known: _Known, names: _Names) -> Block:
+def _block(block: Block, known: _Known, names: _Names, named: Callable[[Expr], Expr]) -> Block:
     result: list[Stmt] = []
     for stmt in block:
         if type(stmt) in NESTED:
             _forget(known, {each for inner in blocks_of(stmt) for each in _written_in(inner, names.written)})
-        result += _statement(stmt, known, names)
+        result += _statement(stmt, known, names, named)
         if type(stmt) in WRITERS:
             _forget(known, _written(stmt, names.written))
     return tuple(result)
 
 
-def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
+def _statement(stmt: Stmt, known: _Known, names: _Names, named: Callable[[Expr], Expr]) -> Block:
     """A statement, behind names for what it is the first to read."""
-    lets: list[Stmt] = []
-    named = _Naming(known, names, lets)
     changed: Stmt
     match stmt:
         case Let(name, Load() | Get() as read):
@@ -141,49 +150,47 @@ def _statement(stmt: Stmt, known: _Known, names: _Names) -> Block:
             seen = known.of(_source(value))
             if value not in seen and names.variables.isdisjoint(locals_in(value)):
                 known.learn(_source(value), value, Local(type_of(value), name))
-                return (*lets, Let(name, value))
-            return (*lets, Let(name, seen.get(value, value)))
+                return (*names.taken_lets(), Let(name, value))
+            return (*names.taken_lets(), Let(name, seen.get(value, value)))
         case While():
             # Its condition is asked in each round: no name before the loop can stand for it.
             changed = stmt
         case _:
             changed = with_expressions(stmt, named)
+    lets = names.taken_lets()
     if type(changed) not in NESTED:
         return (*lets, changed)
-    return (*lets, with_blocks(changed, lambda inner: _branch(inner, known, names)))
+    return (*lets, with_blocks(changed, lambda inner: _branch(inner, known, names, named)))
 
 
-def _branch(block: Block, known: _Known, names: _Names) -> Block:
+def _branch(block: Block, known: _Known, names: _Names, named: Callable[[Expr], Expr]) -> Block:
     """A block that may run or not: what is read in it is forgotten behind it. What it writes has been forgotten before."""
     mark = len(known.news)
-    result = _block(block, known, names)
+    result = _block(block, known, names, named)
     known.unlearn(mark)
     return result
 
 
-@dataclass(frozen=True, slots=True)
-class _Naming:
-    """Gives an expression with names in place of what it reads; what is read for the first time gets its name in ``lets``.
+def _naming(known: _Known, names: _Names) -> Callable[[Expr], Expr]:
+    """Gives an expression with names in place of what it reads; what is read for the first time gets its name in ``names.lets``.
 
-    A function in a function that calls itself would be garbage for each statement.
+    One for a body: a function that calls itself is garbage in a cycle, of which each statement would leave one.
     """
 
-    known: _Known
-    names: _Names
-    lets: list[Stmt]
-
-    def __call__(self, expr: Expr) -> Expr:
+    def named(expr: Expr) -> Expr:
         if type(expr) in PLAIN:
             return expr
-        changed = with_operands(expr, self)
-        if not isinstance(changed, Load | Get) or not self.names.variables.isdisjoint(locals_in(changed)):
+        changed = with_operands(expr, named)
+        if not isinstance(changed, Load | Get) or not names.variables.isdisjoint(locals_in(changed)):
             return changed
-        local = self.known.of(_source(changed)).get(changed)
+        local = known.of(_source(changed)).get(changed)
         if local is None:
-            local = Local(changed.type, self.names.fresh())
-            self.known.learn(_source(changed), changed, local)
-            self.lets.append(Let(local.name, changed))
+            local = Local(changed.type, names.fresh())
+            known.learn(_source(changed), changed, local)
+            names.lets.append(Let(local.name, changed))
         return local
+
+    return named
 
 
 def _source(read: Expr) -> int:
