@@ -131,9 +131,11 @@ def test_in_cpp(name, tmp_path):
     texts = [generated(made.request, "cpp", directions, unit) for unit, directions in units.items()]
     name = cpp.write_as_one(tmp_path, "units", texts)
     for compiler in installed("cpp"):
-        cpp.compiled(compiler, tmp_path, name)
+        if compiler == "clang++" or not made.is_both:
+            cpp.compiled(compiler, tmp_path, name)
     if made.is_both:
-        assert driver.answers(cpp.program(tmp_path, "to_decode_encode", options=QUICK), made.messages) == made.wanted()
+        program = cpp.program(tmp_path, name, options=QUICK, units=("to_decode_encode",))
+        assert driver.answers(program, made.messages, unit="to_decode_encode") == made.wanted()
 
 
 @pytest.mark.parametrize("name", ALL)
