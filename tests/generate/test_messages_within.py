@@ -19,7 +19,8 @@ from tests.generate.driver import answers, harmed
 from tests.generate.test_cpp import BOTH, same
 
 LCM = """package t;
-struct leaf_t { double xs[2]; string name; }
+struct spot_t { double x; int16_t y; }
+struct leaf_t { double xs[2]; spot_t spots[2]; string name; }
 struct other_t { int32_t count; node_t back[count]; int8_t last; }
 struct node_t {
   int32_t count; node_t nodes[count]; string name; int16_t many; int32_t numbers[many]; leaf_t leaves[many]; other_t others[many];
@@ -99,7 +100,8 @@ def node(chance: random.Random, depth: int, *, wide: bool) -> dict[str, object]:
     many = chance.randrange(3) if wide else 0
     back = [[node(chance, depth - 1, wide=True)] if wide and depth and chance.random() < 0.3 else [] for _ in range(many)]
     text = "x" * chance.randrange(20)
-    of_lcm = {"leaves": [{"xs": [1.5, -2.0], "name": text}] * many, "count": len(nodes), "many": many}
+    spots = [{"x": 0.5, "y": -many}, {"x": -3.0, "y": depth}]
+    of_lcm = {"leaves": [{"xs": [1.5, -2.0], "spots": spots, "name": text}] * many, "count": len(nodes), "many": many}
     return of_lcm | {
         "nodes": nodes,
         "name": text,
@@ -115,7 +117,7 @@ def as_lcm(value: dict[str, object], *, fixed: bool) -> dict[str, object]:
     assert isinstance(nodes, list)
     assert isinstance(others, list)
     assert isinstance(leaves, list)
-    named = [{"xs": each["xs"], "names": [each["name"], "b"]} if fixed else each for each in leaves]
+    named = [{"xs": each["xs"], "spots": each["spots"], "names": [each["name"], "b"]} if fixed else each for each in leaves]
     back = [{**each, "back": [as_lcm(inner, fixed=fixed) for inner in each["back"]]} for each in others]
     return {**value, "nodes": [as_lcm(each, fixed=fixed) for each in nodes], "leaves": named, "others": back}
 

@@ -32,7 +32,7 @@ class Opened:
     """A list of the message with those within it: where each is, for types, by its lane; and what sets a field, by its lane and offset.
 
     Or a text, which has a lane alone. ``texts`` are the lanes of lists of texts, ``numbers`` those of arrays: the type of their rows, and
-    how many they are, if that is fixed; ``structs`` those of lists of structs: the type of these.
+    how many they are, if that is fixed; ``structs`` those of lists of structs: the type of these; ``fixed`` how many are in others of them.
     """
 
     at: str
@@ -42,6 +42,7 @@ class Opened:
     texts: set[int] = field(default_factory=set[int])
     numbers: dict[int, str] = field(default_factory=dict[int, str])
     structs: dict[int, Type] = field(default_factory=dict[int, Type])
+    fixed: dict[int, int] = field(default_factory=dict[int, int])
 
     @property
     def lanes(self) -> frozenset[int]:
@@ -55,9 +56,13 @@ class Opened:
     @property
     def kinds(self) -> dict[int, str]:
         """The types of lanes, by their lanes."""
-        found = {lane: f"open_lane<{container_type(at)}>" for lane, at in self.containers.items()}
+        found = {lane: f"open_lane<{container_type(at)}{self._count(lane)}>" for lane, at in self.containers.items()}
         found |= {lane: f"text_lane<{container_type(self.containers[lane])}>" for lane in self.texts}
         return found | {lane: f"number_lane<{container_type(self.containers[lane])}, {row}>" for lane, row in self.numbers.items()}
+
+    def _count(self, lane: int) -> str:
+        """How many elements a list of structs has in any case, as an argument of a template."""
+        return f", {self.fixed[lane]}" if lane in self.fixed else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,9 +152,9 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
     opened.containers[span.lane] = container
     if isinstance(layout.element, Number):
         return _numbers(walk, opened, resolved, span, place)
-    if resolved.fixed is not None:
-        return False
     if isinstance(walk.unit.schema.resolve(resolved.element), String | Bytes):
+        if resolved.fixed is not None:
+            return False
         opened.texts.add(span.lane)
         opened.fields[place.lane, span.offset] = _opening(walk, "open texts", span, place)
         words = {"lane": rows, "index": "$index", "start": "$start", "size": "$size"}
@@ -157,6 +162,8 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
         return True
     opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)
     opened.structs[span.lane] = resolved.element
+    if resolved.fixed is not None:
+        opened.fixed[span.lane] = resolved.fixed
     element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
     place = _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane)
     return _value(walk, opened, resolved.element, layout.element, place) and any(lane == span.lane for lane, _ in opened.fields)

@@ -2019,8 +2019,10 @@ struct without_values {
 
 /* Lists whose elements are set where they are as a message is read: they have no rows, and no more elements than rows may be. A pointer reaches elements that
    lie one behind the other, an iterator those of other lists, as of std::deque. */
-template <class Container> struct open_lane {
+template <class Container, std::size_t Fixed = 0> struct open_lane {
     using Element = element_type<Container>;
+    static_assert(Fixed == 0 || can_resize<Container>::value || sizeof(Container) == Fixed * sizeof(Element),
+                  "the class has another number of elements than the schema");
     using Elements = decltype(elements_of(std::declval<Container &>()));
     static_assert(std::is_base_of_v<std::random_access_iterator_tag, typename std::iterator_traits<Elements>::iterator_category>,
                   "the elements of a list must be reached by their index");
@@ -2059,10 +2061,8 @@ template <class Container> auto opened(Container &target, std::int64_t count)
 }
 
 /* The same of numbers, of which there may be a fixed count: an array has as many, or a vector gets them, as lcm-gen has both. */
-template <class Container, class Row, std::size_t Fixed> struct number_lane : open_lane<Container> {
+template <class Container, class Row, std::size_t Fixed> struct number_lane : open_lane<Container, Fixed> {
     static_assert(same_numbers<typename open_lane<Container>::Element, Row>, ROSETTA_JIT_OTHER_ELEMENTS);
-    static_assert(Fixed == 0 || can_resize<Container>::value || sizeof(Container) == Fixed * sizeof(Row),
-                  "the class has another number of elements than the schema");
 };
 
 /* The same of texts. Those that a list lacks are made of their characters where that can be. */
