@@ -87,6 +87,10 @@ int main()
 NESTED = """package t;
 struct nested_t { int32_t count; nested_t nodes[count]; }
 """
+LARGE = """package t;
+struct part_t { double x; double y; }
+struct nested_t { part_t parts[500]; int32_t count; nested_t nodes[count]; }
+"""
 SCHEMAS = {
     "lcm": ("t.node_t", {"encoding": "lcm", "schema": {"t/x.lcm": LCM}}),
     "lcm of fixed lists": ("t.node_t", {"encoding": "lcm", "schema": {"t/x.lcm": LCM.replace("string name; }", "string names[2]; }")}}),
@@ -170,12 +174,14 @@ def deeper(message: bytes, encoding: str) -> bytes:
 
 
 @cpp.needs_cpp
-def test_counts_that_a_message_only_says(tmp_path):
-    """Each of 64 messages within each other says that all bytes behind it are elements of its list."""
-    options: dict[str, object] = {"encoding": "lcm", "schema": {"t/x.lcm": NESTED}}
-    size = 1 << 16
-    start = bytes(rj.Encoder.of("t.nested_t", **options)({"count": 0, "nodes": []}))[:8]
-    message = start + b"".join(struct.pack(">i", size - 4 * level) for level in range(1, 65))
+@pytest.mark.parametrize(("schema", "before"), [(NESTED, 0), (LARGE, 8000)], ids=["small", "large"])
+def test_counts_that_a_message_only_says(schema, before, tmp_path):
+    """Each of 64 messages within each other, small ones or large ones, says that all bytes behind it are elements of its list."""
+    options: dict[str, object] = {"encoding": "lcm", "schema": {"t/x.lcm": schema}}
+    size, each = (1 << 16) + 128 * before, before + 4
+    encode = rj.Encoder.of("t.nested_t", **options)
+    start = bytes(encode(encode.holder_type()))[:8]
+    message = start + b"".join(bytes(before) + struct.pack(">i", size - each * level) for level in range(1, 65))
     message += bytes(8 + size - len(message))
     (tmp_path / "claims.cpp").write_text(CLAIMS)
     unit = cpp.write(tmp_path, generated(type_request("decode", "t.nested_t", options), "cpp", ("decode",), "unit", Wishes()))
@@ -184,7 +190,8 @@ def test_counts_that_a_message_only_says(tmp_path):
     with pytest.raises(rj.DecodeError) as error:
         rj.Decoder.of("t.nested_t", **options)(message)
     assert said.startswith(f"{error.value.kind} at {error.value.path}, byte {error.value.offset}: ")
-    assert int(taken) < 128 * len(message)
+    at_first = 64 * 2 * (1 << 16)  # of each level
+    assert int(taken) < 128 * len(message) + at_first
 
 
 @cpp.needs_cpp

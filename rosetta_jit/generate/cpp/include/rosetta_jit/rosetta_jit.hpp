@@ -1744,14 +1744,16 @@ template <class Container> struct objects {
 };
 
 /* Messages of a list are made before they are read. Where a count that a message only says would take too much memory, some are made at first, and then more:
-   of lists that are left open within each other each takes no more than half of what the one around it may, and the outermost one a message for each byte. */
-constexpr std::int64_t MESSAGES_AT_FIRST = 1024;
+   of lists that are left open within each other each takes no more than half of what the one around it may, and the outermost one a message for each byte, or as
+   many as take 64 bytes for each. */
+constexpr std::int64_t BYTES_FOR_EACH = 64, BYTES_AT_FIRST = 65536;
 
 template <class Container>
 ROSETTA_JIT_APART void make_messages(Container &target, std::int64_t count, std::int64_t size, std::int64_t depth)
 {
-    const std::int64_t most = std::max(size >> std::min(depth, std::int64_t{62}), MESSAGES_AT_FIRST);
-    resize_to(target, std::min(count, std::max(count_of(target), most)));
+    constexpr std::int64_t WHOLE = sizeof(element_type<Container>);
+    const std::int64_t most = (size >> std::min(depth, std::int64_t{62})) / (1 + WHOLE / BYTES_FOR_EACH);
+    resize_to(target, std::min(count, std::max({count_of(target), most, 1 + BYTES_AT_FIRST / WHOLE})));
 }
 
 /* Makes the first of so many, for which so many bytes are left, and that lie so deep. */
