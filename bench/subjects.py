@@ -68,6 +68,9 @@ SHORT = {
     "Polygon, 4 points": Subject("geometry_msgs/Polygon", "ros1", struct.pack("<I12f", 4, *range(12))),
     "JoyFeedbackArray, 4 elements": _feedback(4),
     "JoyFeedbackArray, 2 elements": _feedback(2),
+    "Float32MultiArray, one dimension": Subject(
+        "std_msgs/Float32MultiArray", "ros1", struct.pack("<IIsIIII3f", 1, 1, b"x", 3, 1, 0, 3, 0.5, 1.5, 2.5)
+    ),
 }
 """Messages that take a few nanoseconds."""
 
