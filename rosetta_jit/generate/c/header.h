@@ -23,7 +23,7 @@ typedef struct ${name}_span {
 
 $structs
 
-$state/* A message. Its arrays and texts lie in lanes, whose memory the caller gives: `rows` with room for `capacity`, of which `used` are taken. */
+$values$state/* A message. Its arrays and texts lie in lanes, whose memory the caller gives: `rows` with room for `capacity`, of which `used` are taken. */
 typedef struct ${name}_holder {
     $root message;
 $members

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from string import Template
 from typing import get_args
 
 from rosetta_jit.errors import Kind
 from rosetta_jit.generate.c.accessors import accessors, memory
+from rosetta_jit.generate.c.constants import named_values
 from rosetta_jit.generate.c.lanes import Lanes, row_type
 from rosetta_jit.generate.c.rows import Member, SpanType, Struct
 from rosetta_jit.generate.c.state import state_struct
@@ -15,6 +17,7 @@ from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_ROWS, C_TYPES
 from rosetta_jit.generate.unit import MADE, Purpose, Unit, kind_of, wire_of
 
+WORD = re.compile(r"\w+")
 STATUSES = ("ok", "full", *get_args(Kind))
 
 OF_WIRE = """/*
@@ -39,20 +42,23 @@ CALLS: dict[Purpose, str] = {
 def header(unit: Unit, lanes: Lanes, structs: tuple[Struct, ...], hidden: int) -> str:
     """The text of the header."""
     template = Template(Path(__file__).with_name("header.h").read_text("utf-8"))
-    return template.substitute(
-        status=unit.name.upper(),
-        made=made(unit),
-        name=unit.name,
-        guard=f"{unit.name.upper()}_H",
-        statuses="\n".join(f"    {unit.name.upper()}_{status.upper()} = {number}," for number, status in enumerate(STATUSES)),
-        structs="\n\n".join(struct_text(unit.name, lanes, struct) for struct in structs),
-        root=lanes.type(0),
-        state="".join(f"{text}\n\n" for text in [state_struct(unit)] if text),
-        members="\n".join(_members(unit, lanes, hidden)),
-        declarations="\n\n".join(_calls(unit)),
-        memory=memory(unit, lanes, hidden),
-        accessors=accessors(unit, lanes, structs),
-    )
+    status = unit.name.upper()
+    filled = {
+        "status": status,
+        "made": made(unit),
+        "name": unit.name,
+        "guard": f"{status}_H",
+        "statuses": "\n".join(f"    {status}_{each.upper()} = {number}," for number, each in enumerate(STATUSES)),
+        "structs": "\n\n".join(struct_text(unit.name, lanes, struct) for struct in structs),
+        "root": lanes.type(0),
+        "state": "".join(f"{text}\n\n" for text in [state_struct(unit)] if text),
+        "members": "\n".join(_members(unit, lanes, hidden)),
+        "declarations": "\n\n".join(_calls(unit)),
+        "memory": memory(unit, lanes, hidden),
+        "accessors": accessors(unit, lanes, structs),
+    }
+    words = frozenset(WORD.findall(template.substitute(filled, values="")))
+    return template.substitute(filled, values=named_values(unit, words))
 
 
 def made(unit: Unit) -> str:

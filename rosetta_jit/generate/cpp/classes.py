@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.backends.printing import Namespace, class_name
+from rosetta_jit.generate.c.constants import value_of
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import RESERVED, of_unit
+from rosetta_jit.generate.constants import constants_of, number_of
+from rosetta_jit.generate.cpp.names import OWN_WORDS, member_names
 from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.model.recursive_structs import recursive_structs
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, NamedConstant, Optional, Ref, String, Struct, Type, Union
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
@@ -50,10 +54,10 @@ def _enum(identifier: str, enum: Enum, unit: str) -> str:
 
 
 def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: frozenset[str], unit: str) -> str:
-    from rosetta_jit.generate.cpp.names import member_names
-
     lines, members = [comment(struct.name), f"struct {identifier} {{"], member_names(struct, unit, identifier)
     named = {name: f"::{unit}::{each}" if each in members else each for name, each in names.items()}
+    scope = Namespace(RESERVED | OWN_WORDS | {identifier, *members} | of_unit(unit, (each.name for each in struct.constants)))
+    lines += [_constant(scope.identifier(each.name), each) for each in constants_of(struct)]
     for field, member in zip(struct.fields, members, strict=True):
         kind = _type(field.type, named, recursive)
         is_bare = isinstance(field.type, Bool | Int | Float | Ref) or kind.startswith("std::array")
@@ -63,6 +67,16 @@ def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: fr
     if struct.option("unknown"):
         lines.append("    std::string unknown_fields; /* fields that the schema does not know, as they came */")
     return "\n".join([*lines, "};", ""])
+
+
+def _constant(identifier: str, constant: NamedConstant) -> str:
+    kind = "const char *" if isinstance(constant.type, String) else f"{_type(constant.type, {}, frozenset())} "
+    value = value_of(constant) or _not_finite(kind.strip(), number_of(constant))
+    return f"    static constexpr {kind}{identifier} = {value};{f' {comment(constant.doc)}' if constant.doc else ''}"
+
+
+def _not_finite(type_: str, value: float) -> str:
+    return f"{'-' if value < 0 else ''}std::numeric_limits<{type_}>::{'quiet_NaN' if math.isnan(value) else 'infinity'}()"
 
 
 def _type(type_: Type, names: dict[str, str], recursive: frozenset[str]) -> str:

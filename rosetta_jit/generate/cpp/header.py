@@ -45,7 +45,7 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
     named = class_of(unit, manners)
     includes = ["<cstddef>", "<cstdint>", "<memory>"]
     if manners.type is None:
-        includes += ["<array>", "<map>", "<optional>", "<string>", "<variant>", "<vector>"]
+        includes += ["<array>", "<limits>", "<map>", "<optional>", "<string>", "<variant>", "<vector>"]
     lines = [f"#include {each}" for each in sorted(includes)] + ["", "#include <rosetta_jit/rosetta_jit.hpp>"]
     if manners.header is not None:
         lines += [f"#include <{unit.include or manners.header(root)}>"]

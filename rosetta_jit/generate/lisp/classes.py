@@ -6,12 +6,32 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
+from rosetta_jit.generate.constants import constants_of, number_of, scalar_of_constant
 from rosetta_jit.generate.inner_types import reached_types
+from rosetta_jit.generate.lisp.expressions import constant as number
 from rosetta_jit.generate.lisp.lines import Lines
-from rosetta_jit.generate.lisp.texts import doc
+from rosetta_jit.generate.lisp.texts import doc, literal
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, constants, hyphenated, runtime_names, symbols
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Field, Float, Int, Map, Optional, Ref, Schema, String, Struct, Type, Union
+from rosetta_jit.model.types import (
+    Array,
+    Bool,
+    Bytes,
+    Declaration,
+    Enum,
+    Field,
+    Float,
+    Int,
+    Map,
+    NamedConstant,
+    Optional,
+    Ref,
+    Schema,
+    String,
+    Struct,
+    Type,
+    Union,
+)
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -58,21 +78,31 @@ class Classes:
         """What who uses the package needs: for each type its symbols, in order."""
         return [self._exported(self.schema.types[name], symbol) for name, symbol in self.types.items()]
 
-    def _exported(self, declared: Type, symbol: str) -> list[str]:
+    def _exported(self, declared: Declaration, symbol: str) -> list[str]:
         if isinstance(declared, Enum):
             return [constant for constant, _ in self.values(declared)]
-        assert isinstance(declared, Struct)
-        return [symbol, f"make-{symbol}", *(f"{symbol}-{self.slot(declared, each)}" for each in _slots(declared))]
+        slots = [f"{symbol}-{self.slot(declared, each)}" for each in _slots(declared)]
+        return [symbol, f"make-{symbol}", *slots, *(constant for constant, _ in self.values(declared))]
 
-    def values(self, enum: Enum) -> list[tuple[str, int]]:
-        """The constants of an enum."""
+    def values(self, declared: Declaration) -> list[tuple[str, str]]:
+        """The constants of an enum or struct, and the forms of their values."""
+        if isinstance(declared, Enum):
+            named = [(name, str(value)) for name, value in declared.values]
+        else:
+            named = [(each.name, _value(each)) for each in constants_of(declared)]
         scope = Names(frozenset())
-        return [(f"+{self.types[enum.name]}.{scope.symbol(name)}+", value) for name, value in enum.values]
+        return [(f"+{self.types[declared.name]}.{scope.symbol(name)}+", value) for name, value in named]
 
     def constants(self) -> list[str]:
-        """Those of all enums."""
-        enums = [each for name in self.types if isinstance(each := self.schema.types[name], Enum)]
-        return [constant for each in enums for constant, _ in self.values(each)]
+        """Those of all types."""
+        return [constant for name in self.types for constant, _ in self.values(self.schema.types[name])]
+
+
+def _value(named: NamedConstant) -> str:
+    """The form of a constant's value."""
+    if isinstance(named.value, str):
+        return literal(named.value)
+    return number(scalar_of_constant(named), number_of(named))
 
 
 def _slots(struct: Struct) -> list[str]:
@@ -98,11 +128,10 @@ def definitions(classes: Classes) -> str:
         declared = classes.schema.types[name]
         if lines.lines:
             lines.line("")
-        if isinstance(declared, Enum):
-            for constant, value in classes.values(declared):
-                lines.line(f"(defconstant {constant} {value})")
-        else:
-            assert isinstance(declared, Struct)
+        for constant, value in classes.values(declared):
+            define = "define-symbol-macro" if value.startswith(('"', "(text")) else "defconstant"  # a text is never the same one
+            lines.line(f"({define} {constant} {value})")
+        if isinstance(declared, Struct):
             _class(lines, classes, symbol, declared)
     return lines.text()
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import builtins
 import keyword
+import math
 import re
 import sys
 from collections.abc import Collection, Mapping
 from typing import assert_never
 
 from rosetta_jit.backends.printing import Namespace, class_name
+from rosetta_jit.generate.constants import constants_of
 from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.generate.unit import Unit, wire_of
 from rosetta_jit.model.layout import scalar_of
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
+from rosetta_jit.model.types import Array, Bool, Bytes, Constant, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
 
 WORDS = frozenset(
     (
@@ -121,6 +123,10 @@ def _class(identifier: str, struct: Struct, names: dict[str, str], unit: Unit) -
     head = ["@dataclass(slots=True, eq=False)", f"class {identifier}(_Comparable):"] if unit.numpy else head
     lines = [*head, f"    {_doc(f'{struct.name}. {struct.doc}'.rstrip('. ') + '.')}", ""]
     members = member_names(struct)
+    scope = Namespace(MEMBERS.union(members))
+    for constant in constants_of(struct):
+        lines.append(f"    {scope.identifier(constant.name)} = {_literal(constant.value)}")
+        lines += [f"    {_doc(constant.doc)}"] if constant.doc else []
     for each, member in zip(struct.fields, members, strict=True):
         lines.append(f"    {member}: {_beside(members, f'{_type(each.type, names, unit)} = {_default(each.type, names, unit)}')}")
         said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
@@ -129,6 +135,13 @@ def _class(identifier: str, struct: Struct, names: dict[str, str], unit: Unit) -
         declared = _beside(members, 'bytes = b""')
         lines += [f"    unknown_fields: {declared}", '    """Fields that the schema does not know, as they came."""']
     return "\n".join([*lines, ""])
+
+
+def _literal(value: Constant) -> str:
+    """Whatever a schema says; a text as ASCII."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return "math.nan" if math.isnan(value) else "math.inf" if value > 0 else "-math.inf"
+    return ascii(value)
 
 
 def _beside(members: Collection[str], text: str) -> str:
