@@ -51,7 +51,8 @@ def add_mappings(command: ArgumentParser) -> None:
 
 def add_encoding(command: ArgumentParser) -> None:
     """Which bytes, where a framework has several."""
-    command.add_argument("--encoding", help="one of those that `rosetta-jit frameworks` lists (default: the mapping's own)")
+    usual = "the usual one of the framework; messages of YARP tell theirs"
+    command.add_argument("--encoding", help=f"one of those that `rosetta-jit frameworks` lists (default: {usual})")
 
 
 def add_dialect(command: ArgumentParser) -> None:
