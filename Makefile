@@ -18,6 +18,9 @@ ifneq ($(wildcard $(YARP)/cmake/.built),)
 export YARP_DIR ?= $(abspath $(YARP))/cmake
 endif
 
+# Processes that run tests: one more than processors, as some wait for compilers, peers and files.
+WORKERS ?= $(shell expr `getconf _NPROCESSORS_ONLN` + 1)
+
 # Versions of Python besides the one of $(VENV): names or paths.
 PYTHONS ?= python3.12 python3.13 python3.14
 
@@ -36,7 +39,7 @@ usecase: $(VENV)/.test ## a component on RSB moves a simulated iCub on YARP (a r
 # In the order of their names, files that take long are not the last ones, for which other workers would wait.
 test: export PYTHONDONTWRITEBYTECODE :=
 test: check ## lint, check types, run all tests but the campaigns
-	$(BIN)/python -m pytest -m "not campaign" -n auto --dist loadfile --no-loadscope-reorder $(ARGS)
+	$(BIN)/python -m pytest -m "not campaign" -n $(WORKERS) --dist loadfile --no-loadscope-reorder $(ARGS)
 
 check: $(VENV)/.test ## lint and check types alone
 	$(BIN)/ruff check
