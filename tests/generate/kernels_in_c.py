@@ -17,7 +17,11 @@ from rosetta_jit.kernel.passes.alone import alone
 from rosetta_jit.kernel.state import USED, lane_word
 from rosetta_jit.model.layout import Lane as LayoutLane
 from rosetta_jit.model.layout import Layout, Number
+from rosetta_jit.model.types import Schema
+from rosetta_jit.model.types import Struct as Type
 from tests.generate.bridge import Error, compiled
+
+SCHEMA = Schema({"Raw": Type("Raw", ())})
 
 
 @cache
@@ -29,7 +33,7 @@ def library(kernel):
     own = tuple(Lane(*names[k], raw.size, raw) for k, raw in enumerate(raws))
     lanes = Lanes("unit", own, len(own))
     layout = Layout(tuple(LayoutLane(f"lane{k}", raw.size, Number(0, "u8")) for k, raw in enumerate(raws)))
-    unit = Unit("unit", (), layout, (1,) * len(own), {"decode": kernel})
+    unit = Unit("unit", (), layout, (1,) * len(own), {"decode": kernel}, type="Raw", schema=SCHEMA)
     printed = {"decode": print_kernel(kernel, lanes, "decode")}
     return compiled(source(unit, lanes, tuple(raws), printed), header(unit, lanes, tuple(raws), 0), "unit"), printed["decode"].sites
 
