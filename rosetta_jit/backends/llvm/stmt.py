@@ -154,14 +154,13 @@ def _call(frame: Frame, call: nodes.Call) -> None:
     builder, parameters = frame.builder, frame.parameters
     arguments = [expression(frame, each) for each in call.arguments]
     outcome = builder.call(routine, [parameters.buffer, parameters.begin, parameters.end, parameters.state, *arguments])
-    first = builder.extract_value(outcome, 1) if call.sites or call.results else None
-    if call.sites and first is not None:
-        number = builder.extract_value(outcome, 0)
+    if call.sites:
+        number, first = builder.extract_value(outcome, 0), builder.extract_value(outcome, 1)
         good = cold(frame, builder.icmp_signed("==", number, constant(0)))
         fail(frame, call.sites, number, first, call.indices)
         builder.position_at_end(good)
     for position, result in enumerate(call.results, 1):
-        frame.locals[result.name] = first if position == 1 and first is not None else builder.extract_value(outcome, position)
+        frame.locals[result.name] = builder.extract_value(outcome, position)
 
 
 def _inline(frame: Frame, call: nodes.Call, routine: kernel.Routine) -> None:
