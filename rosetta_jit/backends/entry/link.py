@@ -110,10 +110,11 @@ def _own_images(program: Program) -> tuple[list[bytes], set[str]]:
     if not program.is_vast:
         module, machine = _optimised(program, texts)
         return [machine.emit_object(module)], _declared(module)
-    images, declared, machine = list[bytes](), set[str](), _machine(program, texts)
+    images, declared, hurried = list[bytes](), set[str](), _is_hurried(program, texts)
+    machine = target_machine(hurried=hurried)
     while texts:
         module = linked([texts.pop(0)])
-        _optimise(module, program, machine)
+        _optimise(module, program, machine, hurried=hurried)
         images.append(machine.emit_object(module))
         declared |= _declared(module)
         del module
@@ -127,18 +128,19 @@ def _declared(module: binding.ModuleRef) -> set[str]:
 def _optimised(program: Program, parts: Iterable[str]) -> tuple[binding.ModuleRef, binding.TargetMachine]:
     """Parts of a program as one module, after LLVM's passes, and what makes code of it."""
     texts = tuple(parts)
-    module, machine = linked(texts), _machine(program, texts)
+    hurried = _is_hurried(program, texts)
+    module, machine = linked(texts), target_machine(hurried=hurried)
     make_private(module, program.exported)
-    _optimise(module, program, machine)
+    _optimise(module, program, machine, hurried=hurried)
     return module, machine
 
 
-def _machine(program: Program, texts: Iterable[str]) -> binding.TargetMachine:
-    """What makes code of a program whose own modules have some texts."""
-    return target_machine(hurried=program.would_take_long(sum(text.count("\n") for text in texts)))
+def _is_hurried(program: Program, texts: Iterable[str]) -> bool:
+    """Whether code is made in a hurry of a program whose own modules have some texts."""
+    return program.would_take_long(sum(text.count("\n") for text in texts))
 
 
-def _optimise(module: binding.ModuleRef, program: Program, machine: binding.TargetMachine) -> None:
+def _optimise(module: binding.ModuleRef, program: Program, machine: binding.TargetMachine, *, hurried: bool) -> None:
     """Run LLVM's passes once.
 
     Kernels leave little for LLVM to find, and a few passes find it, in time that is in proportion to the kernel. Those of O3, which take
@@ -148,9 +150,9 @@ def _optimise(module: binding.ModuleRef, program: Program, machine: binding.Targ
     wants_thorough = bool(program.options.get("functions") or program.options.get("thorough"))
     loops = [kernel for kernel in program.kernels if has_loops_for_vectors(kernel)]
     if program.is_vast or not (wants_thorough or loops):
-        # Of protobuf's TestAllTypesProto3, to combine costs the encoder 0.3 s, of branches and of instructions.
-        # A call of it is a twentieth quicker with fewer branches, and 1.5 % with fewer instructions.
-        run_few_passes(module, machine, combining=not (program.is_vast and program.entry == "encode"))
+        # Of protobuf's TestAllTypesProto3, whose code is made in a hurry, to combine costs the decoder 0.2 s and 4.5 MB, the encoder 0.3 s.
+        # A call of the decoder is no quicker, one of the encoder a twentieth with fewer branches, and 1.5 % with fewer instructions.
+        run_few_passes(module, machine, combining=not (hurried or (program.is_vast and program.entry == "encode")))
         return
     thorough = wants_thorough or any(map(is_moderate, loops))
     tuning = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
