@@ -144,10 +144,10 @@ class StoredExit:
     is_reached: bool = False
     shared: dict[tuple[object, ...], ir.Block] = field(default_factory=dict[tuple[object, ...], "ir.Block"])
 
-    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value], through: ir.Block | None = None) -> None:
-        """End the builder's block with a jump here, or to a block on the way; words whose values are not given stay as they are."""
+    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value], through: ir.Block) -> None:
+        """End the builder's block with a jump to a block on the way, or to this; words whose values are not given stay as they are."""
         self._store(builder, self.words, values)
-        builder.branch(self.block if through is None else through)
+        builder.branch(through)
         self.is_reached = True
 
     def drop(self) -> None:
@@ -168,15 +168,16 @@ class StoredExit:
 class Stretch:
     """What stands for the lanes and offsets of the last stretch of a series in the one that is being printed: ``columns`` of its row.
 
-    ``words`` are the places in the state where the words of a lane of that number lie. A site is looked up where something has failed.
-    The function of a shared block ``is_whole``: all in it has these numbers.
+    ``words`` are the places in the state where the words of a lane of that number lie. The numbers of ``sites`` are looked up, by
+    ``number``, where something has failed. The function of a shared block ``is_whole``: all in it has these numbers.
     """
 
     lanes: Mapping[int, Number]
     offsets: Mapping[tuple[int, int], Number]
     columns: Mapping[int, ir.Value]
     words: Mapping[int, ir.Value]
-    site: Callable[[ir.IRBuilder, int], ir.Value]
+    sites: Mapping[int, Number]
+    number: Callable[[ir.IRBuilder, Number], ir.Value]
     is_whole: bool = False
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import COLD, I64, Frame, StoredExit, constant, state_word
+from rosetta_jit.backends.llvm.failing import go_on, on_the_way
+from rosetta_jit.backends.llvm.frame import I64, Frame, StoredExit, constant, state_word
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 
 
@@ -13,31 +14,33 @@ def reserve(frame: Frame, lane: int, count: ir.Value) -> None:
     builder = frame.builder
     used = builder.load(frame.used_slot(lane), typ=I64)
     free = builder.sub(frame.capacity(lane), used, flags=("nsw",))
-    enough, small, is_new = frame.block("enough"), *_small(frame, lane, count)
-    builder.cbranch(builder.icmp_unsigned("<=", count, free), enough, small).set_weights(COLD)
-    if is_new:
-        builder.position_at_end(small)
-        _grow(frame, lane, count)
-    builder.position_at_end(enough)
+    go_on(frame, builder.icmp_unsigned("<=", count, free), frame.block("enough"), _small(frame, lane, count))
 
 
-def _small(frame: Frame, lane: int, count: ir.Value) -> tuple[ir.Block, bool]:
-    """The block for where rows are missing, and whether it is a new one: a large body has one for each lane and constant number of rows."""
-    if not (isinstance(frame.failed, StoredExit) and isinstance(count, ir.Constant) and frame.has_one_stretch):
-        return frame.block("small"), True
-    told, shared = ("small", lane, count), frame.failed.shared
-    is_new = told not in shared
-    if is_new:
-        shared[told] = frame.block("small")
-    return shared[told], is_new
+def grow(frame: Frame) -> ir.Block:
+    """The block of a large body that returns GROW."""
+    return on_the_way(frame, "grow", ("grow",), lambda: frame.leave(constant(GROW)))
 
 
-def _grow(frame: Frame, lane: int, count: ir.Value) -> None:
-    """Return GROW, and say for which lane and for how many rows."""
+def _small(frame: Frame, lane: int, count: ir.Value) -> ir.Block:
+    """The block for where rows are missing: a large body has one for each lane and constant number of rows."""
+    is_alike = isinstance(count, ir.Constant) and frame.has_one_stretch
+
+    def printed() -> None:
+        _tell(frame, lane, count)
+        if isinstance(frame.failed, StoredExit):
+            frame.builder.branch(grow(frame))
+        else:
+            frame.leave(constant(GROW))
+
+    return on_the_way(frame, "small", ("small", lane, count) if is_alike else None, printed)
+
+
+def _tell(frame: Frame, lane: int, count: ir.Value) -> None:
+    """Say in which lane rows are missing, and how many."""
     builder, state = frame.builder, frame.parameters.state
     missing = builder.sub(count, builder.sub(frame.capacity(lane), builder.load(frame.used_slot(lane), typ=I64), flags=("nsw",)))
     builder.store(frame.lane_number(lane), state_word(builder, state, GROW_LANE), align=8)
     if frame.is_hidden(lane):
         missing = builder.mul(missing, constant(frame.strides[lane]))
     builder.store(missing, state_word(builder, state, GROW_ROWS), align=8)
-    frame.leave(constant(GROW))

@@ -104,12 +104,8 @@ def _stretch(frame: Frame, series: Series, index: ir.Value, block: Printer) -> N
         frame.locals[name] = builder.trunc(row.number(builder, number), LLVM_TYPES[type_])
     columns = {column: row.number(builder, Number(column, 0)) for column in columns_of(series)}
     words = words_of(builder, frame.parameters.state, series, columns)
-
-    def site(where: ir.IRBuilder, number: int) -> ir.Value:
-        found = series.sites.get(number)
-        return constant(number) if found is None else row.number(where, found)
-
-    around, frame.alike, frame.stretch = frame.alike, NOTHING, Stretch(series.lanes, series.offsets, columns, words, site)
+    stretch = Stretch(series.lanes, series.offsets, columns, words, series.sites, row.number)
+    around, frame.alike, frame.stretch = frame.alike, NOTHING, stretch
     block(frame, series.body)
     frame.alike, frame.stretch = around, None
 

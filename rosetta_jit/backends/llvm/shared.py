@@ -30,6 +30,7 @@ from rosetta_jit.backends.llvm.frame import (
     new_function,
     state_word,
 )
+from rosetta_jit.backends.llvm.growth import grow
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.series import columns_of, words_of
 from rosetta_jit.backends.llvm.tables import table
@@ -66,11 +67,8 @@ def print_place(frame: Frame, place: Place, block: Printer) -> None:
     )
     status = builder.extract_value(outcome, 0)
     good = cold(frame, builder.icmp_signed("==", status, constant(0)))
-    grown = frame.block("grown")
-    builder.cbranch(builder.icmp_signed("==", status, constant(GROW)), grown, failed.block)
+    builder.cbranch(builder.icmp_signed("==", status, constant(GROW)), grow(frame), failed.block)
     failed.is_reached = True
-    builder.position_at_end(grown)
-    frame.leave(constant(GROW))
     builder.position_at_end(good)
     for number, each in enumerate(variables, 1):
         builder.store(builder.extract_value(outcome, number), each.slot)
@@ -133,13 +131,9 @@ def _inside(frame: Frame, shared: Shared, function: ir.Function, outcome: ir.Lit
         value = where.load(state_word(where, numbers, wanted.column), typ=I64, align=8)
         return where.add(value, constant(wanted.further)) if wanted.further else value
 
-    def site(where: ir.IRBuilder, known: int) -> ir.Value:
-        found = series.sites.get(known)
-        return constant(known) if found is None else number(where, found)
-
     columns = {column: number(entry, Number(column, 0)) for column in columns_of(series)}
     words = words_of(entry, state, series, columns)
-    inside.stretch = Stretch(series.lanes, series.offsets, columns, words, site, is_whole=True)
+    inside.stretch = Stretch(series.lanes, series.offsets, columns, words, series.sites, number, is_whole=True)
     for name, (type_, each) in series.constants.items():
         inside.locals[name] = entry.trunc(number(entry, each), LLVM_TYPES[type_])
     return inside, first
