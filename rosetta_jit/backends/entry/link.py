@@ -152,7 +152,7 @@ def _optimise(module: binding.ModuleRef, program: Program, machine: binding.Targ
     if program.is_vast or not (wants_thorough or loops):
         # Of protobuf's TestAllTypesProto3, whose code is made in a hurry, to combine costs the decoder 0.2 s and 4.5 MB, the encoder 0.3 s.
         # A call of the decoder is no quicker, one of the encoder a twentieth with fewer branches, and 1.5 % with fewer instructions.
-        run_few_passes(module, machine, combining=not (hurried or (program.is_vast and program.entry == "encode")))
+        run_few_passes(module, machine, combining=not (program.is_vast and (hurried or program.entry == "encode")))
         return
     thorough = wants_thorough or any(map(is_moderate, loops))
     tuning = binding.create_pipeline_tuning_options(speed_level=3 if thorough else 1)
