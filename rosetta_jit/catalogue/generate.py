@@ -55,7 +55,14 @@ def unusable_name(name: str) -> Diagnostic:
 
 
 def somebody_elses(path: str) -> Diagnostic:
-    message = f"`{path}` was not made by this command, and would be lost"
+    return _not_replaced(f"`{path}` was not made by this command, and would be lost")
+
+
+def of_another_subject(path: str, subject: str) -> Diagnostic:
+    return _not_replaced(f"`{path}` was made from `{subject}`, and would be lost")
+
+
+def _not_replaced(message: str) -> Diagnostic:
     return error("not-replaced", message, help_="name the files otherwise (--name), put them into another folder (-o), or remove it first")
 
 

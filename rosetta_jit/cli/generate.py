@@ -15,6 +15,7 @@ from rosetta_jit.cli.arguments import (
     add_options,
     options_of,
 )
+from rosetta_jit.diagnostics import Diagnostic
 from rosetta_jit.file_errors import folder, named, whole
 from rosetta_jit.pipeline.request import Request
 
@@ -99,16 +100,23 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _keep(output: Path, texts: Mapping[str, str | bytes]) -> None:
-    """Refuse to replace what somebody has written: of files that say who made them, those that are there must say so, too."""
-    from rosetta_jit.catalogue.generate import somebody_elses
+    """Refuse to replace what somebody has written, or what was made from something else: only files that say from what they were made."""
+    from rosetta_jit.catalogue.generate import of_another_subject, somebody_elses
     from rosetta_jit.errors import SchemaError
-    from rosetta_jit.generate.unit import MADE
+    from rosetta_jit.generate.provenance import is_made, subject_of
 
-    said = MADE.encode()
-    ours = [output / name for name, text in texts.items() if isinstance(text, str) and MADE in text.partition("\n")[0]]
-    there = [each for each in ours if each.is_file() and not each.is_symlink()]
-    if lost := tuple(somebody_elses(str(each)) for each in there if said not in each.read_bytes().partition(b"\n")[0]):
-        raise SchemaError(lost)
+    lost: list[Diagnostic] = []
+    for name, text in texts.items():
+        path = output / name
+        if not isinstance(text, str) or not is_made(text) or not path.is_file() or path.is_symlink():
+            continue
+        there = path.read_text("utf-8", "replace")
+        if not is_made(there):
+            lost.append(somebody_elses(str(path)))
+        elif subject_of(there) != subject_of(text):
+            lost.append(of_another_subject(str(path), subject_of(there)))
+    if lost:
+        raise SchemaError(tuple(lost))
 
 
 def _source(arguments: argparse.Namespace) -> Mapping[str, str | bytes]:

@@ -12,6 +12,7 @@ from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import Language, installed, language_named
 from rosetta_jit.generate.origins import Origin, origins_of
+from rosetta_jit.generate.provenance import line_of_mapping, line_of_type
 from rosetta_jit.generate.unit import Role, Unit, UserFunction, wire_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Digits, Nearest, Scalar, Scale, Unary
@@ -195,11 +196,10 @@ def _made_from(builds: dict[Role, AheadOfTime], shown: Callable[[Role], str]) ->
     for role, build in builds.items():
         types, encoding = build.types, build.request.encoding or next(iter(build.wire_framework.encodings))
         if types.rules is None:
-            yield f"{shown(role)}: {types.wire.name}, {encoding}"
+            yield line_of_type(shown(role), types.wire.name, encoding)
             continue
-        arrow = "<-" if role == "encode" else "->"
-        by = PurePath(build.checked.mapping.source.name).name
-        yield f"{shown(role)}: {types.wire.name}, {encoding} {arrow} {types.holder.name}, by {by}"
+        file = PurePath(build.checked.mapping.source.name).name
+        yield line_of_mapping(shown(role), types.wire.name, encoding, types.holder.name, file)
         yield from _rules(build)
 
 

@@ -86,6 +86,46 @@ def test_what_this_command_did_not_make_is_not_replaced(tmp_path, capsys):
     assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
+LANGUAGES = {"c": "point.c", "cpp": "point.hpp", "python": "point.py", "lisp": "point.lisp"}
+POINTS = {"a": "float64 x\n", "b": "float64 x\nstring name\n"}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_files_of_another_type_are_not_replaced(language, tmp_path, capsys, monkeypatch):
+    """Types of two packages are often called the same; those of one are made anew, whichever direction and encoding they were of."""
+    monkeypatch.chdir(tmp_path)
+    for package, fields in POINTS.items():
+        (tmp_path / package / "msg").mkdir(parents=True)
+        (tmp_path / package / "msg" / "Point.msg").write_text(fields)
+
+    def made(package, encoding, *more):
+        options = ["--import", f"{package}/msg/Point.msg", "--encoding", encoding, "--language", language, "-o", "out"]
+        return main(["generate", f"{package}/Point", *options, *more])
+
+    for encoding, *more in (["cdr"], ["cdr"], ["cdr", "--directions", "encode"], ["cdr2"], ["cdr", "--directions", "encode,decode"]):
+        assert made("a", encoding, *more) == 0, capsys.readouterr().err
+    before = {each: each.read_bytes() for each in Path("out").glob("*.*")}
+    assert made("b", "cdr") == 1
+    said = capsys.readouterr().err
+    assert f"error[not-replaced]: `out/{LANGUAGES[language]}` was made from `a/msg/Point`, and would be lost\n" in said
+    assert "--name" in said
+    assert {each: each.read_bytes() for each in Path("out").glob("*.*")} == before
+    assert made("b", "cdr", "--name", "other_point") == 0
+
+
+def test_files_of_another_mapping_are_not_replaced(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = (MAPPINGS / "yarp/icub/torso_state.mapping").read_text()
+    for name in ("torso", "waist"):
+        (tmp_path / f"{name}.mapping").write_text(text)
+    command = ["--encoding", "yarp3", "--name", "unit"]
+    for more in ([], [], ["--directions", "encode"]):
+        assert main(["generate", "torso.mapping", *command, *more]) == 0, capsys.readouterr().err
+    assert main(["generate", "waist.mapping", *command]) == 1
+    said = "`unit.h` was made from `rst.kinematics.JointAngles, by torso.mapping`, and would be lost"
+    assert said in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("below", ["", "/inner"])
 def test_a_file_is_no_folder(below, tmp_path, capsys):
     (tmp_path / "file").write_text("")

@@ -12,6 +12,7 @@ import pytest
 
 from tests.generate.test_cpp import CMAKE
 
+ICUB = CMAKE.parents[2] / "mappings/yarp/icub"
 PROJECT = """
 cmake_minimum_required(VERSION 3.13)
 project(node LANGUAGES C CXX)
@@ -61,12 +62,22 @@ OWN = "int own(void) { typeof(1) extension_of_gnu = 7; return extension_of_gnu; 
     any(shutil.which(each) is None for each in ("cmake", "gcc", "g++")), reason="CMake and the compilers are not all installed"
 )
 def test_a_project_of_others(tmp_path):
-    """Libraries are linked without keywords, C has extensions, the target is exported, and two languages are generated for it."""
-    shutil.copy(CMAKE.parents[2] / "mappings/yarp/icub/torso_state.mapping", tmp_path / "the-torso.mapping")
+    """Libraries are linked without keywords, C has extensions, the target is exported, and two languages are generated for it.
+
+    Files become those of another type when a mapping's is another one.
+    """
+    shutil.copy(ICUB / "torso_state.mapping", tmp_path / "the-torso.mapping")
     for name, text in (("CMakeLists.txt", PROJECT), ("main.cpp", MAIN), ("own.c", OWN), ("lab.proto", SCHEMA)):
         (tmp_path / name).write_text(text)
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
-    for command in (["cmake", "-S", ".", "-B", "made", f"-Drosetta_jit_DIR={CMAKE}"], ["cmake", "--build", "made"]):
+
+    def run(*command):
         done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
+
+    run("cmake", "-S", ".", "-B", "made", f"-Drosetta_jit_DIR={CMAKE}")
+    run("cmake", "--build", "made")
     assert subprocess.run([tmp_path / "made/node"], capture_output=True, text=True, check=False).stdout == "2 7 0 ok\n"  # 0: big-endian
+    shutil.copy(ICUB / "camera_image.mapping", tmp_path / "the-torso.mapping")
+    run("cmake", "--build", "made", "--target", "node")
+    assert "-> rst.vision.Image, by the-torso.mapping" in (tmp_path / "made/rosetta_jit/node/the_torso.hpp").read_text()

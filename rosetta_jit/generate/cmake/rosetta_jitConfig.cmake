@@ -86,6 +86,7 @@ function(rosetta_generate target subject)
   endif()
   add_custom_command(
     OUTPUT ${files}
+    COMMAND "${CMAKE_COMMAND}" -E remove -f ${files} # else the command keeps them where SUBJECT has become another one
     COMMAND "${ROSETTA_JIT_EXECUTABLE}" generate "${subject}" ${options} --output "${folder}"
     DEPENDS ${depends}
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
