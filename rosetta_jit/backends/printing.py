@@ -39,7 +39,10 @@ class Writer:
 
 @dataclass(slots=True)
 class Namespace:
-    """Identifiers for names that come from schemas: of letters, digits and underscores, not reserved, and of each name another."""
+    """Identifiers for names that come from schemas: of letters, digits and underscores, not reserved, and of each name another.
+
+    A reserved name gets an underscore, ``class_``; what another name has already, a number, ``at_2``.
+    """
 
     reserved: frozenset[str]
     identifiers: dict[str, str] = field(default_factory=dict[str, str])
@@ -54,9 +57,9 @@ class Namespace:
 
     def _free(self, wanted: str) -> str:
         start = wanted if wanted[:1].isalpha() else f"v{wanted}"
-        candidate, number = start, len(self.taken)
+        candidate, number = f"{start}_" if start in self.reserved else start, len(self.taken)
         while candidate in self.taken or candidate in self.reserved:
-            candidate = f"{start}_{number}"
+            candidate = f"{start.rstrip('_')}_{number}"
             number += 1
         return candidate
 

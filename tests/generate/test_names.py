@@ -342,3 +342,41 @@ def test_fields_are_called_as_their_types_in_cpp(tmp_path):
     decode, encode = (of("t/outer", **options) for of in (rj.Decoder.of, rj.Encoder.of))
     messages = driver.harmed([bytes(encode(value))], 20, "called as types")
     same(driver.answers(made, messages), decode, encode, messages)
+
+
+LEG = """package leg;
+struct leg { const int8_t OK = 1, EOF = 2; double q[3]; int8_t leg; int32_t n; codec parts[n]; span s; holder h; }
+struct codec { int8_t leg; int8_t codec; }
+struct span { int8_t leg; int32_t n; span s[n]; }
+struct holder { int8_t x; string class; }
+"""
+"""A type is called as its unit, others as types of the header, a constant and a field as words."""
+A_LEG = {
+    "q": [1, 2, 3],
+    "leg": 4,
+    "n": 1,
+    "parts": [{"leg": 5, "codec": 6}],
+    "s": {"leg": 7, "n": 1, "s": [{"leg": 8, "n": 0, "s": []}]},
+    "h": {"x": 9, "class": "y"},
+}
+READABLE = {
+    "c": ["} leg_leg;", "} leg_holder_;", "} leg_span_;", "    int8_t leg;", "#define leg_leg_EOF 2\n", "leg_span class_;"],
+    "cpp": ["struct leg {", "struct codec_ {", "struct holder_ {", "int8_t leg_{};", "int8_t EOF_ = 2;", "std::string class_;"],
+    "python": ["class leg:", "class codec:", "    leg: int", "    EOF = 2\n", "    class_: str"],
+    "lisp": ["(defclass leg ", "(defclass codec-message ", "(defclass holder ", "(defconstant +leg.eof+ 2)", "   (class :initarg"],
+}
+
+
+@pytest.mark.parametrize(("language", "program"), [("c", driver.driver), ("cpp", cpp.program), ("python", None), ("lisp", None)])
+def test_what_is_called_as_a_word_ends_with_an_underscore_and_not_in_a_number(language, program, tmp_path):
+    """A package, its file and its type are often called the same in LCM: for that, none of them is called otherwise."""
+    options: Any = {"encoding": "lcm", "schema": {"leg.lcm": LEG}}
+    texts = generated(type_request("decode", "leg.leg", options), language, BOTH, "leg")
+    for each in READABLE[language]:
+        assert each in "".join(texts.values())
+    if program is None or shutil.which("g++") is None:
+        return
+    made = program(tmp_path, (driver.write if language == "c" else cpp.write)(tmp_path, texts))
+    decode, encode = (of("leg.leg", **options) for of in (rj.Decoder.of, rj.Encoder.of))
+    messages = driver.harmed([bytes(encode(A_LEG))], 5, "leg")
+    same(driver.answers(made, messages), decode, encode, messages)

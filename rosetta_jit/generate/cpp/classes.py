@@ -29,7 +29,7 @@ def names_of(unit: Unit) -> dict[str, str]:
     """The classes and enums of a unit by their names in the schema."""
     names = [*reached_types(unit)]
     simple = (re.split(r"[./:]+", name)[-1] for name in names)
-    scope = Namespace(RESERVED | NOT_CLASSES | {unit.name} | of_unit(unit.name, simple))
+    scope = Namespace(RESERVED | NOT_CLASSES | of_unit(unit.name, simple))
     return {name: class_name(scope, name) for name in names}
 
 

@@ -99,7 +99,7 @@ def class_of(unit: Unit, manners: Manners) -> str:
     root = unit.schema.types[unit.type]
     assert isinstance(root, Struct)
     if manners.type is None:
-        return f"{unit.name}::{root_class(unit)}"
+        return f"::{unit.name}::{root_class(unit)}"
     return manners.type(root)
 
 
