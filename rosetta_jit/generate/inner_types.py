@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from itertools import count
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.constants import modules_around
 from rosetta_jit.model.types import Array, Declaration, Enum, Field, Map, Optional, Ref, Schema, Struct, Type, Union
 from rosetta_jit.startup.dataclass import replace
 
@@ -17,10 +18,14 @@ if TYPE_CHECKING:
 
 
 def with_inner_types(schema: Schema, name: str) -> Schema:
-    """A schema in which what is within the type of that name, and those in it, has a name, too: fields refer to it."""
+    """A schema in which what is within the type of that name, and those in it, has a name, too: fields refer to it.
+
+    Modules around them that have constants are structs.
+    """
     found = _Names(schema)
     found.declared(name)
-    return replace(schema, types=found.types)
+    named = replace(schema, types=found.types)
+    return replace(named, types={**modules_around(named, _reached(named, name)), **found.types})
 
 
 class _Names:
@@ -75,9 +80,14 @@ class _Names:
 
 
 def reached_types(unit: Unit) -> dict[str, None]:
-    """The declared types that the message contains, each behind those that it contains itself."""
+    """The declared types that the message contains, each behind those that it contains itself, and the modules around them."""
+    found = _reached(unit.schema, unit.type)
+    return {**found, **dict.fromkeys(modules_around(unit.schema, found))}
+
+
+def _reached(schema: Schema, type_: str) -> dict[str, None]:
     found: dict[str, None] = {}
-    pending: list[tuple[str, bool]] = [(unit.type, False)]
+    pending: list[tuple[str, bool]] = [(type_, False)]
     seen: set[str] = set()
     while pending:
         name, done = pending.pop()
@@ -88,7 +98,7 @@ def reached_types(unit: Unit) -> dict[str, None]:
             continue
         seen.add(name)
         pending.append((name, True))
-        declared = unit.schema.types[name]
+        declared = schema.types[name]
         inner = [each for field in declared.fields for each in _refs(field.type)] if isinstance(declared, Struct) else []
         pending += [(each, False) for each in reversed(inner)]
     return found

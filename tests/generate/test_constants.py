@@ -52,6 +52,23 @@ REQUEST = type_request("decode", "lab/Arm", {"encoding": "ros1", "schema": {"lab
 MODES = 'syntax = "proto3"; package e; enum Mode { OFF = 0; LOW = -2147483648; ON = 5; } message M { Mode mode = 1; }'
 OF_MODES = type_request("decode", "e.M", {"encoding": "protobuf", "schema": {"e.proto": MODES}})
 
+IDL = """
+const long OUTSIDE = 1;
+module other { const long ELSEWHERE = 9; };
+module lab {
+  const long LIMIT = 3;
+  const long class = 4;
+  module msg {
+    const double HALF = 0.5;
+    module Arm_Constants { const octet OK = 5; };
+    struct msg { long HALF; };
+    struct Arm { sequence<string, LIMIT> names; msg part; };
+  };
+};
+"""
+"""Constants stand beside the messages and around them; a struct is called as its module."""
+OF_MODULES = type_request("decode", "lab::msg::Arm", {"encoding": "cdr-giop", "framework": "corba", "schema": {"lab.idl": IDL}})
+
 
 def named_as(language: str) -> tuple[Any, int]:
     """A type whose constants are called as many words of a language, and their number."""
@@ -91,12 +108,13 @@ def left_with(program: Path) -> int:
 def test_in_c(compiler, tmp_path):
     if shutil.which(compiler) is None:
         pytest.skip(f"{compiler} is not installed")
-    for request, name in ((REQUEST, "unit"), (OF_MODES, "modes"), (named_as("c")[0], "words")):
+    for request, name in ((REQUEST, "unit"), (OF_MODES, "modes"), (OF_MODULES, "lab"), (named_as("c")[0], "words")):
         driver.compiled(compiler, tmp_path, driver.write(tmp_path, generated(request, "c", BOTH, name)))
     enum = "    if (modes_Mode_ON != 5 || modes_Mode_LOW != INT32_MIN) return 99;"
-    text = f"{checks('unit_Arm_')}\n{enum}\n    return 0;"
+    of_modules = "lab_constants_OUTSIDE != 1 || lab_lab_LIMIT != 3 || lab_lab_class != 4 || lab_lab_msg_HALF != 0.5 || lab_Arm_OK != 5"
+    text = f"{checks('unit_Arm_')}\n{enum}\n    if ({of_modules}) return 98;\n    return 0;"
     (tmp_path / "main.c").write_text(
-        f'#include "unit.h"\n#include "modes.h"\n#include <math.h>\n#include <string.h>\nint main(void)\n{{\n{text}\n}}\n'
+        f'#include "unit.h"\n#include "modes.h"\n#include "lab.h"\n#include <math.h>\n#include <string.h>\nint main(void)\n{{\n{text}\n}}\n'
     )
     subprocess.run([compiler, "-std=c11", "-Wall", "-Wextra", "-Werror", "main.c", "-o", "main"], cwd=tmp_path, check=True)
     assert left_with(tmp_path / "main") == 0
@@ -108,13 +126,14 @@ def test_in_cpp(tmp_path):
         tmp_path,
         {
             each: text
-            for name, request in (("unit", REQUEST), ("words", named_as("c")[0]))
+            for name, request in (("unit", REQUEST), ("lab", OF_MODULES), ("words", named_as("c")[0]))
             for each, text in generated(request, "cpp", BOTH, name).items()
         },
     )
-    text = f"{checks('unit::Arm::')}\n    return unit::Arm{{}}.state;"
+    of_modules = "constants::OUTSIDE != 1 || ::lab::lab::LIMIT != 3 || ::lab::lab::class_ != 4 || lab_msg::HALF != 0.5 || Arm::OK != 5"
+    text = f"{checks('unit::Arm::')}\n    using namespace lab;\n    if ({of_modules}) return 98;\n    return unit::Arm{{}}.state;"
     (tmp_path / "main.cpp").write_text(
-        f'#include "unit.hpp"\n#include "words.hpp"\n#include <cmath>\n#include <cstring>\nint main()\n{{\n{text}\n}}\n'
+        f'#include "unit.hpp"\n#include "words.hpp"\n#include "lab.hpp"\n#include <cmath>\n#include <cstring>\nint main()\n{{\n{text}\n}}\n'
     )
     subprocess.run(["g++", *cpp.STRICT, "-I.", "main.cpp", "-o", "main"], cwd=tmp_path, check=True)
     assert left_with(tmp_path / "main") == 0
@@ -124,6 +143,7 @@ def test_in_cpp(tmp_path):
 def test_in_lisp(tmp_path):
     package = lisp.write(tmp_path, generated(REQUEST, "lisp", BOTH, "unit"))
     others = lisp.write(tmp_path, generated(named_as("lisp")[0], "lisp", BOTH, "words"))
+    of_modules = lisp.write(tmp_path, generated(OF_MODULES, "lisp", BOTH, "lab"))
     forms = list[str]()
     for name, value in VALUES.items():
         constant = f"{package}:+arm.{name.lower()}+"
@@ -138,10 +158,15 @@ def test_in_lisp(tmp_path):
                 forms.append(f"(and (sb-ext:float-infinity-p {constant}) (minusp {constant}))")
             case _:
                 forms.append(f"(= {constant} {Fraction(value)})")
+    values = {"constants.outside": 1, "lab.limit": 3, "lab.class": 4, "msg-2.half": 0.5, "arm.ok": 5}
+    forms += [f"(= {of_modules}:+{name}+ {value})" for name, value in values.items()]
     said = lisp.run(
-        *lisp.begun(), *(f'(unit "{tmp_path}/" "{each}")' for each in (package, others)), f"(print (list {' '.join(forms)}))", cwd=tmp_path
+        *lisp.begun(),
+        *(f'(unit "{tmp_path}/" "{each}")' for each in (package, others, of_modules)),
+        f"(print (list {' '.join(forms)}))",
+        cwd=tmp_path,
     )
-    assert said.split() == f"({' '.join(['T'] * len(VALUES))})".split()
+    assert said.split() == f"({' '.join(['T'] * len(forms))})".split()
 
 
 def test_in_python():
@@ -150,6 +175,9 @@ def test_in_python():
         assert repr(getattr(arm, name)) == repr(value)
     assert arm.__slots__ == ("state", "IDLE_")
     assert module(OF_MODES).Mode.ON == 5
+    lab = module(OF_MODULES)
+    assert (lab.constants.OUTSIDE, lab.lab.LIMIT, lab.lab.class_, lab.lab_msg.HALF, lab.Arm.OK) == (1, 3, 4, 0.5, 5)
+    assert not hasattr(lab, "other")
 
 
 def test_names_in_python():
