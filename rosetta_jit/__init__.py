@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from rosetta_jit.errors import (
     AddressError,
     BridgeError,
+    BrokenPackage,
     CacheWarning,
     DecodeError,
     EncodeError,
@@ -56,6 +57,7 @@ __all__ = [
     "Batch",
     "Bridge",
     "BridgeError",
+    "BrokenPackage",
     "CacheWarning",
     "DecodeError",
     "Decoder",

@@ -13,6 +13,8 @@ RosettaError
     ValuesError         plain values that a holder's type cannot take; with field path
     InvalidHolder       a holder that was read although the last decode into it failed
     TransportError      a peer or a connection that fails; with kind and address
+    MissingPackage      an extra that is not installed
+    BrokenPackage       an installed package that cannot be imported
     InUse               a holder or batch that another thread uses at the same time
 
 Errors of the caller (an object of the wrong type, a read-only output) are Python's own TypeError and BufferError.
@@ -216,6 +218,10 @@ def _placed(text: str, path: str, *more: str) -> str:
 
 class MissingPackage(RosettaError, ImportError):  # noqa: N818  the package is what is missing
     """What was asked for takes a package that is an extra; the message says how to install it."""
+
+
+class BrokenPackage(RosettaError):  # noqa: N818  the package is what is broken
+    """An installed package offers something for rosetta_jit that cannot be imported; the message names the package and the cause."""
 
 
 class InvalidHolder(RosettaError):  # noqa: N818  the holder is what is wrong

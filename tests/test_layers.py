@@ -60,7 +60,7 @@ ANYTHING = (
 )
 
 MAY_IMPORT = {
-    "startup": set(),
+    "startup": {"errors"},
     "source": set(),
     "terminal": set(),
     "file_errors": set(),

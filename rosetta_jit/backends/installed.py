@@ -7,7 +7,7 @@ from functools import cache
 from typing import cast
 
 from rosetta_jit.backends.backend import Backend
-from rosetta_jit.startup.entry_points import offered
+from rosetta_jit.startup.entry_points import loaded
 
 GROUP = "rosetta_jit.backends"
 """The entry-point group in which packages offer backends of their own: a `Backend` each."""
@@ -26,7 +26,7 @@ OURS = (
 @cache
 def installed() -> Mapping[str, Backend]:
     """Every backend by name; none takes the place of ours."""
-    return {each.name: each for each in (*(cast("Backend", each.load()) for each in offered(GROUP)), *OURS)}
+    return {each.name: each for each in (*cast("tuple[Backend, ...]", loaded(GROUP)), *OURS)}
 
 
 def backend_named(name: str | None) -> Backend | None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 from rosetta_jit.model.types import name_parts
 from rosetta_jit.source import shipped_folders
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.entry_points import offered
+from rosetta_jit.startup.entry_points import loaded
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def shipped() -> tuple[Framework, ...]:
 def installed() -> Mapping[str, Framework]:
     """Every framework by name: ours, and those of installed packages, which cannot take the place of ours."""
     ours = {framework.name: framework for framework in shipped()}
-    offers = [cast("Framework", each.load()) for each in offered(GROUP)]
+    offers = cast("tuple[Framework, ...]", loaded(GROUP))
     return ours | {framework.name: framework for framework in offers if framework.name not in ours}
 
 

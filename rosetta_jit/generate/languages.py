@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, cast
 
 from rosetta_jit.startup.dataclass import dataclass
-from rosetta_jit.startup.entry_points import offered
+from rosetta_jit.startup.entry_points import loaded
 from rosetta_jit.startup.garbage import object_at
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ LANGUAGES = (
 @cache
 def installed() -> Mapping[str, Language]:
     """Every language by name: ours, whose place none takes, and those of installed packages."""
-    offers = [cast("Language", each.load()) for each in offered(GROUP)]
+    offers = cast("tuple[Language, ...]", loaded(GROUP))
     ours = {each.name: each for each in LANGUAGES}
     return ours | {each.name: each for each in offers if each.name not in ours}
 

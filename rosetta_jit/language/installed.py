@@ -106,7 +106,7 @@ def shipped() -> tuple[Function, ...]:
 @cache
 def offered() -> tuple[Function, ...]:
     """The functions of installed packages."""
-    return tuple(cast("Function", each.load()) for each in entry_points.offered(GROUP))
+    return cast("tuple[Function, ...]", entry_points.loaded(GROUP))
 
 
 def names() -> tuple[str, ...]:

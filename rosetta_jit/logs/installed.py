@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Any
 
 from rosetta_jit.logs.base import Format
-from rosetta_jit.startup.entry_points import offered
+from rosetta_jit.startup.entry_points import loaded
 
 GROUP = "rosetta_jit.logs"
 """The group of entry points by which packages offer formats."""
@@ -34,5 +33,4 @@ FORMATS = (
 @cache
 def formats() -> Mapping[str, Format]:
     """Every format by name."""
-    offers: list[Any] = [each.load() for each in offered(GROUP)]
-    return {each.name: each for each in (*FORMATS, *offers)}
+    return {each.name: each for each in (*FORMATS, *loaded(GROUP))}

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator
 from functools import cache
 from importlib.machinery import PathFinder
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -25,6 +25,28 @@ def offered(group: str) -> tuple[EntryPoint, ...]:
     from importlib.metadata import entry_points
 
     return tuple(entry_points(group=group))
+
+
+def loaded(group: str) -> tuple[Any, ...]:
+    """What all installed packages offer under a group.
+
+    Raises
+    ------
+    BrokenPackage
+        One of them cannot be imported.
+    """
+    return tuple(_loaded(each) for each in offered(group))
+
+
+def _loaded(offer: EntryPoint) -> object:
+    try:
+        return offer.load()
+    except Exception as error:
+        from rosetta_jit.errors import BrokenPackage
+
+        package, entry = offer.module if offer.dist is None else offer.dist.name, f"{offer.group}: {offer.name} = {offer.value}"
+        why = f"`{entry}` cannot be imported ({type(error).__name__}: {error})"
+        raise BrokenPackage(f"the installed package `{package}` is broken: {why}; repair it, or uninstall it") from error
 
 
 def files_of_offered(group: str) -> tuple[str, ...]:

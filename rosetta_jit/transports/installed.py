@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import TYPE_CHECKING, cast
 
-from rosetta_jit.startup.entry_points import offered
+from rosetta_jit.startup.entry_points import loaded
 from rosetta_jit.startup.garbage import imported
 
 if TYPE_CHECKING:
@@ -25,5 +25,5 @@ def installed() -> Mapping[str, Transport]:
     ours = [
         each for name in OURS for each in cast("tuple[Transport, ...]", imported(f"rosetta_jit.transports.{name}.transport").TRANSPORTS)
     ]
-    offers = (cast("Transport", each.load()) for each in offered(GROUP))
+    offers = cast("tuple[Transport, ...]", loaded(GROUP))
     return {scheme: transport for transport in (*ours, *offers) for scheme in transport.schemes}

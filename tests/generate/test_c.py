@@ -9,6 +9,7 @@ import re
 import shutil
 import struct
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -413,6 +414,24 @@ def test_no_package_takes_the_place_of_our_languages_or_stops_them(line, tmp_pat
     offers(tmp_path, line, monkeypatch, TOY.replace('"toy"', '"c"'))
     assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "-o", str(tmp_path)]) == 0
     assert (tmp_path / "joint_state.h").exists()
+
+
+@pytest.mark.usefixtures("offers_anew")
+@pytest.mark.parametrize(
+    ("line", "text", "why"),
+    [
+        ("toy = no_such_module:TOY", TOY, "ModuleNotFoundError: No module named 'no_such_module'"),
+        ("toy = toy_language:TOI", TOY, "AttributeError: module 'toy_language' has no attribute 'TOI'"),
+        ("toy = toy_language:TOY", "raise RuntimeError('half')", "RuntimeError: half"),
+    ],
+)
+def test_a_broken_language_is_named(line, text, why, tmp_path, monkeypatch, capsys):
+    offers(tmp_path, line, monkeypatch, text)
+    monkeypatch.delitem(sys.modules, "toy_language", raising=False)
+    assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "--language", "toy", "-o", str(tmp_path / "made")]) == 1
+    said = f"`rosetta_jit.languages: {line}` cannot be imported ({why})"
+    assert capsys.readouterr().err == f"the installed package `toy` is broken: {said}; repair it, or uninstall it\n"
+    assert not (tmp_path / "made").exists()
 
 
 def test_capacities_are_what_the_schema_bounds():
