@@ -47,8 +47,9 @@ def of_another_framework(holder: str, type_: str, framework: str, known: Sequenc
     return error("not-in-holder", f"`{type_}`, a type of {framework}, has no class of `{holder}`", help_=help_)
 
 
-def unusable_name(name: str) -> Diagnostic:
-    rule = "letters, digits and underscores, of which a letter comes first, up to 40; no header of C, and no word of the language"
+def unusable_name(name: str, also: str) -> Diagnostic:
+    kinds = f"letters, digits, underscores and `{also}`" if also else "letters, digits and underscores"
+    rule = f"{kinds}, of which a letter comes first, up to 40; no header of C, and no word of the language"
     help_ = f"choose another --name: {rule}"
     message = f"`{name}` cannot begin the names of functions"
     return error("unusable-name", message, help_=help_)

@@ -160,11 +160,10 @@ def _usual_name(subject: str, language: str) -> str:
     What no identifier has becomes an underscore: ``my-arm.mapping`` gives ``my_arm``. A name that a header of C has, or a word of the
     language, as that of ``std_msgs/String``, is preceded by what stands before it: ``std_msgs_string``.
     """
-    from rosetta_jit.generate.build import HEADERS
     from rosetta_jit.generate.languages import language_named
 
     parts = re.split(r"[./:]+", subject.removesuffix(".mapping"))
     names = [re.sub(r"(?<=[a-z0-9])(?=[A-Z])|[^A-Za-z0-9_]+", "_", part).lower()[:MAX_NAME] for part in parts]
     known = language_named(language)
-    is_usable = names[-1] not in HEADERS and (known is None or known.may_name(names[-1]))
+    is_usable = known is None or known.may_name(names[-1])
     return names[-1] if is_usable else "_".join(names[-2:])

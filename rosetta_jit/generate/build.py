@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import PurePath
 
@@ -28,13 +27,6 @@ from rosetta_jit.pipeline.build import Build, within_stack
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.pipeline.wires import arrival_registers
 from rosetta_jit.startup.dataclass import dataclass, replace
-
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
-HEADERS = frozenset(
-    """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic stdbool stddef
-    stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype""".split()  # noqa: SIM905 - nobody reads 29 quoted words
-)
-"""Headers of C11, 7.1.2: who includes one of these must not find ours."""
 
 MAX_LINES = 200
 """Rules that the head of a file shows."""
@@ -93,9 +85,7 @@ def unit_of(
         The mapping or type has mistakes, or needs what generated source cannot have.
     """
     builds: dict[Role, AheadOfTime] = {role: machine(_for(request, role)) for role in roles}
-    kernels = _kernels(builds)  # of what does not exist, it is not the name that is wrong
-    if not NAME.fullmatch(name) or name in HEADERS:
-        raise SchemaError((words.unusable_name(name),))
+    kernels = _kernels(builds)
     _check(kernels, freestanding=wishes.freestanding)
     first = next(iter(builds.values()))
     bounds, functions = _bounds(first, kernels), _functions(first, kernels)
@@ -218,7 +208,15 @@ def object_of(
     from rosetta_jit.generate.c.objects import files_for
 
     with within_stack():
-        return files_for(unit_of(request, roles, name, Wishes(freestanding)), triple, cpu)
+        unit = unit_of(request, roles, name, Wishes(freestanding))
+        _check_name(name, language_named("c"))
+        return files_for(unit, triple, cpu)
+
+
+def _check_name(name: str, language: Language | None) -> None:
+    """Refuse a name that the files cannot have; once the unit is made, as of what does not exist it is not the name that is wrong."""
+    if language is not None and not language.may_name(name):
+        raise SchemaError((words.unusable_name(name, language.also_in_names),))
 
 
 def _machine(language: Language) -> type[AheadOfTime]:
@@ -269,10 +267,9 @@ def generated(request: Request, language: str, roles: tuple[Role, ...], name: st
     chosen = language_named(language)
     if chosen is None:
         raise SchemaError((words.unknown_language(language, tuple(installed())),))
-    if not chosen.may_name(name):
-        raise SchemaError((words.unusable_name(name),))
     _check_wishes(wishes, chosen)
     with within_stack():
         wanted = _of_wires(request, roles) if chosen.wires else roles
         unit = unit_of(request, chosen.roles(wanted), name, wishes, _machine(chosen), chosen.shown)
+        _check_name(name, chosen)
         return chosen.files(unit)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, cast
@@ -15,6 +16,12 @@ if TYPE_CHECKING:
 
     Files = Callable[[Unit], dict[str, str]]
     """From a unit to the texts of its files by their names."""
+
+HEADERS = frozenset(
+    """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic stdbool stddef
+    stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype""".split()  # noqa: SIM905 - nobody reads 29 quoted words
+)
+"""Headers of C11, 7.1.2: who includes one of these must not find ours."""
 
 GROUP = "rosetta_jit.languages"
 """The entry-point group in which packages offer languages of their own: a `Language` each."""
@@ -47,6 +54,8 @@ class Language:
         Its arrays of numbers can be numpy's.
     wires
         Its decoders of several wires fill one holder.
+    also_in_names
+        What the names of units may have besides letters, digits and underscores.
     taken
         A set of names that no unit may have, as ``module:name``: words of the language, and modules that a file would hide.
     """
@@ -61,11 +70,14 @@ class Language:
     holders: bool = False
     numpy: bool = False
     wires: bool = False
+    also_in_names: str = ""
     taken: str = ""
 
     def may_name(self, name: str) -> bool:
         """Whether a unit may be called so."""
-        return not self.taken or name not in cast("frozenset[str]", object_at(self.taken))
+        is_name = re.fullmatch(f"[A-Za-z][A-Za-z0-9_{re.escape(self.also_in_names)}]{{0,39}}", name) is not None
+        is_taken = name in HEADERS or (self.taken != "" and name in cast("frozenset[str]", object_at(self.taken)))
+        return is_name and not is_taken
 
     def roles(self, wanted: tuple[Role, ...]) -> tuple[Role, ...]:
         """The kernels that the printer needs for what is wanted."""
@@ -116,6 +128,7 @@ LANGUAGES = (
         borrows=True,
         low_byte_first=True,
         wires=True,
+        also_in_names="-",
     ),
 )
 

@@ -51,7 +51,7 @@ class Unit:
     Attributes
     ----------
     name
-        Of the files, and what begins all names in them: a C identifier in lower case.
+        Of the files, and what begins all names in them; `Language.may_name` says that it can.
     made_from
         Lines for a person: the mapping and its rules, or the type, and the encoding.
     layout

@@ -9,6 +9,7 @@ import pytest
 
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
+from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.build import generated
 from rosetta_jit.generate.c.lanes import Lane
 from rosetta_jit.generate.lisp.lanes import lanes_of
@@ -148,6 +149,25 @@ def test_names_of_the_runtime_are_known(tmp_path):
     found = {name for name in printed.split() if hyphenated(name) == name}
     assert "make-failure" in found
     assert found <= runtime_names()
+
+
+@lisp.needs_sbcl
+def test_units_are_called_as_systems_of_lisp_are(tmp_path):
+    """With hyphens, where other languages have underscores: both names are of the same package."""
+    request = type_request("decode", "std_msgs/Header", {"encoding": "ros1"})
+    assert generated(request, "lisp", BOTH, "arm-lcm") == generated(request, "lisp", BOTH, "arm_lcm")
+    package = lisp.write(tmp_path, generated(request, "lisp", BOTH, "arm-lcm"))
+    assert package == "arm-lcm"
+    said = lisp.run(
+        *lisp.begun(), f'(unit "{tmp_path}/" "{package}")', "(print (length (arm-lcm:encode (arm-lcm:make-header))))", cwd=tmp_path
+    )
+    assert said.split() == ["16"]
+    for language in ("c", "cpp", "python"):
+        with pytest.raises(SchemaError, match="unusable-name"):
+            generated(request, language, BOTH, "arm-lcm")
+    for name in ("-arm", "7-arm", "arm lcm", "time"):
+        with pytest.raises(SchemaError, match="digits, underscores and `-`"):
+            generated(request, "lisp", BOTH, name)
 
 
 @lisp.needs_sbcl
