@@ -171,7 +171,7 @@ def no_definition(name: str, topic: str, type_: str) -> Diagnostic:
     return error(
         "log-definition",
         f"{name} has no definition of `{type_}`, the type of the messages of `{topic}`, and the search path has none either",
-        help_="search_path=[folder], or --search-path, adds a folder that has its file; imports=[file], or --import, names that file",
+        help_="search_path=[folder] adds a folder that has its file; imports=[file] names that file",
     )
 
 

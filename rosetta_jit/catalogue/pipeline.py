@@ -41,7 +41,7 @@ def ambiguous_encoding(name: str, known: Sequence[str]) -> Diagnostic:
     return error(
         "ambiguous-encoding",
         f"`{name}` reads several dialects, but only one can be written",
-        help_=f"say which: encoding= one of {', '.join(known)}",
+        help_=f"say which by encoding=, one of {', '.join(known)}",
         notes=("nothing on the wire tells a reader which one it is, so the writer must know what its peer reads",),
     )
 
@@ -122,11 +122,7 @@ def unknown_type(name: str, known: Sequence[str]) -> Diagnostic:
     if name.endswith(SUFFIXES):
         help_ = f'a file is imported, and a type in it is named: imports=["{shorten(name)}"]'
     else:
-        help_ = (
-            f"did you mean {' or '.join(f'`{each}`' for each in meant)}?"
-            if meant
-            else "name the files that declare it: imports=[…], or --import"
-        )
+        help_ = f"did you mean {' or '.join(f'`{each}`' for each in meant)}?" if meant else "name the files that declare it: imports=[file]"
     return error("unknown-type", f"no file declares a message `{name}`", help_=help_)
 
 
@@ -141,7 +137,7 @@ def unknown_suffix(name: str, known: Sequence[str]) -> Diagnostic:
 
 def no_such_file(name: str, folders: Sequence[str]) -> Diagnostic:
     notes = tuple(f"searched {folder}" for folder in folders)
-    return error("no-such-file", f"`{name}` is not on the search path", help_="add its folder: search_path=[…]", notes=notes)
+    return error("no-such-file", f"`{name}` is not on the search path", help_="add its folder: search_path=[folder]", notes=notes)
 
 
 def too_large(name: str, span: Span | None, why: str) -> Diagnostic:

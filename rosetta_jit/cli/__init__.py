@@ -77,7 +77,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return run(chosen)
     except RosettaError as error:
-        print(error, file=sys.stderr)
+        from rosetta_jit.cli.advice import said_of
+
+        print(said_of(error), file=sys.stderr)
     except BrokenPipeError:
         # Whoever read our output has seen enough. Python would complain once more when it flushes at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

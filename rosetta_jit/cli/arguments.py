@@ -73,6 +73,13 @@ def add_imports(command: ArgumentParser) -> None:
     command.add_argument("--import", dest="imports", metavar="FILE", action="append", default=[], help="a file that declares the type")
 
 
+def add_search_path(command: ArgumentParser) -> None:
+    """Folders of definitions."""
+    command.add_argument(
+        "--search-path", metavar="FOLDER", action="append", default=[], help="a folder to look for definitions in, before all others"
+    )
+
+
 def add_wire(command: ArgumentParser) -> None:
     """Which wire, of a mapping that has several."""
     command.add_argument("--wire", metavar="NAME", help="one of several wires of the mapping")
@@ -95,6 +102,7 @@ def add_options(command: ArgumentParser) -> None:
     add_encoding(command)
     add_dialect(command)
     add_imports(command)
+    add_search_path(command)
     add_wire(command)
     add_parameters(command)
 
@@ -152,6 +160,7 @@ def options_of(arguments: Namespace, subject: str = "") -> Options:
         "lenient": cast("list[str]", arguments.lenient),
         "parameters": parameters_of(arguments),
         "wire": wire_of(arguments),
+        "search_path": cast("list[str]", arguments.search_path),
     }
     return {**options, "imports": imports} if imports else options
 

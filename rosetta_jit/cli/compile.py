@@ -81,4 +81,11 @@ def _show(warmed: Warmed, *, as_json: bool, progress: str) -> None:
     if error is None:
         print(f"[{progress}] {printable(name)}: {request.direction}{encoding}, {1000 * warmed.seconds:.0f} ms", flush=True)
     else:
-        print(f"[{progress}] {printable(name)}: {request.direction}{encoding}\n{error}\n", file=sys.stderr, flush=True)
+        print(f"[{progress}] {printable(name)}: {request.direction}{encoding}\n{_said(error)}\n", file=sys.stderr, flush=True)
+
+
+def _said(error: Exception) -> str:
+    from rosetta_jit.cli.advice import said_of
+    from rosetta_jit.errors import RosettaError
+
+    return said_of(error) if isinstance(error, RosettaError) else str(error)

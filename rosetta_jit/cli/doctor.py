@@ -6,9 +6,10 @@ import argparse
 import json
 from typing import TYPE_CHECKING
 
-from rosetta_jit.cli.arguments import Commands, add_command
-from rosetta_jit.cli.logs import add_log, add_search_path, log_of, progress
-from rosetta_jit.diagnostics import render, to_json
+from rosetta_jit.cli.advice import report
+from rosetta_jit.cli.arguments import Commands, add_command, add_search_path
+from rosetta_jit.cli.logs import add_log, log_of, progress
+from rosetta_jit.diagnostics import to_json
 
 if TYPE_CHECKING:
     from rosetta_jit.logs.log import Log
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
             print(json.dumps({"log": log.name, "messages": count, "problems": [to_json(each) for each in found]}))
         else:
             counted = "1 problem" if len(found) == 1 else f"{len(found) or 'no'} problems"
-            print("\n".join([*map(render, found), f"{log.name}: {count} messages read, {counted}"]))
+            print("\n".join([*map(report, found), f"{log.name}: {count} messages read, {counted}"]))
     return int(bool(found))
 
 

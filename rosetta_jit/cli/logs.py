@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from rosetta_jit.cli.arguments import add_search_path
 from rosetta_jit.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
@@ -76,13 +77,6 @@ def add_schemas(command: ArgumentParser) -> None:
     add_search_path(command)
 
 
-def add_search_path(command: ArgumentParser) -> None:
-    """Folders of definitions."""
-    command.add_argument(
-        "--search-path", metavar="FOLDER", action="append", default=[], help="where definitions are found that the log lacks"
-    )
-
-
 def _moment(text: str) -> int:
     from rosetta_jit.logs.moments import moment_of
 
@@ -111,9 +105,9 @@ def log_of(arguments: Namespace, on_problem: Callable[[Diagnostic], object] | No
 
 def show(problem: Diagnostic) -> None:
     """Say what is wrong with a log."""
-    from rosetta_jit.diagnostics import render
+    from rosetta_jit.cli.advice import report
 
-    print(render(problem), file=sys.stderr)
+    print(report(problem), file=sys.stderr)
 
 
 def topics_of(arguments: Namespace) -> list[str] | None:

@@ -173,3 +173,32 @@ def test_mappings_import_by_themselves(tmp_path, capsys):
     assert main(command) == 1
     assert "error[needless-option]: `--import` says nothing about a mapping" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+ADVICE = [
+    (["lab.Nothing", "--framework", "protobuf"], "name the files that declare it: --import FILE"),
+    (["lab.Arm", "--import", "nowhere.proto"], "add its folder: --search-path FOLDER"),
+    (["lab/msg/Arm.msg", "--encoding", "ros1"], "a file is imported, and a type in it is named: --import lab/msg/Arm.msg"),
+    (["yarp/icub/torso_state.mapping"], "say which by --encoding, one of yarp3, yarp4"),
+    (["std_msgs/Header", "--encoding", "ros1", "--byte-order", "big"], "leave out --byte-order"),
+    (["lab.Arm", "--encoding", "protobuf", "--import", "{folder}/lab.proto", "--lenient", "all"], "leave out --lenient"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "advice"), ADVICE)
+def test_advice_is_in_words_of_the_command_line(arguments, advice, tmp_path, capsys, monkeypatch):
+    """What a program would be told is another word: ``search_path=[folder]``."""
+    monkeypatch.chdir(tmp_path)
+    Path("lab.proto").write_text('syntax = "proto3"; package lab; message Arm { uint32 joints = 1; }')
+    assert main(["generate", *(each.format(folder=tmp_path) for each in arguments), "-o", "made"]) == 1
+    assert f"  = help: {advice}" in capsys.readouterr().err
+
+
+def test_definitions_are_found_in_folders_that_are_named(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("own").mkdir()
+    Path("own/lab.proto").write_text('syntax = "proto3"; package lab; message Arm { uint32 joints = 1; }')
+    command = ["generate", "lab.Arm", "--import", "lab.proto", "--language", "python"]
+    assert main(command) == 1
+    assert main([*command, "--search-path", "own"]) == 0, capsys.readouterr().err
+    assert "class Arm:" in Path("arm.py").read_text()
