@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.c.expressions import constant
+from rosetta_jit.generate.c.literals import constant
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.kernel.nodes import Direction
 

@@ -11,7 +11,8 @@ from rosetta_jit.generate.lisp.classes import classes_of, definitions, function_
 from rosetta_jit.generate.lisp.functions import About, Printed, computes_with_floats, print_kernel
 from rosetta_jit.generate.lisp.lanes import Lanes, lanes_of
 from rosetta_jit.generate.lisp.lines import Lines
-from rosetta_jit.generate.lisp.objects import Put, Take
+from rosetta_jit.generate.lisp.putting import Put
+from rosetta_jit.generate.lisp.taking import Take
 from rosetta_jit.generate.lisp.texts import comment, literal
 from rosetta_jit.generate.lisp.words import API, package_of, runtime_text
 from rosetta_jit.generate.shares import changed_lanes
