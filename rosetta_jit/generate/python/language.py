@@ -15,9 +15,10 @@ from rosetta_jit.generate.python.encoding.collecting import Collect
 from rosetta_jit.generate.python.encoding.encoder import encoder_in_parts
 from rosetta_jit.generate.python.passes.positions import NotInParts
 from rosetta_jit.generate.python.printing.classes import WORDS, classes, names_of
+from rosetta_jit.generate.python.printing.definitions import definition
 from rosetta_jit.generate.python.printing.functions import Attempt, beside_lanes, is_flat, print_kernel
 from rosetta_jit.generate.python.printing.printed import Objects
-from rosetta_jit.generate.python.printing.scope import CODES, TRUTH, Scope, view_name
+from rosetta_jit.generate.python.printing.scope import CODES, Scope, view_name
 from rosetta_jit.generate.python.support import mentioned, needed, support
 from rosetta_jit.generate.python.wires import decoder, filling, rows_at_first, staying, wires_of
 from rosetta_jit.generate.unit import MADE, Role, Unit, wire_of
@@ -30,8 +31,6 @@ from rosetta_jit.startup.dataclass import replace
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""
 
-BY_COUNT = {"reads": "unpack_from", "writes": "pack"}
-"""The methods of the struct module that read, and write, as many numbers as a message says."""
 NO_MEMORY = "the message asks for more memory than its size allows"
 
 
@@ -67,21 +66,7 @@ class _Module:
 
     def _constants(self) -> str:
         """Views of nothing, and functions of the struct module."""
-        lines: list[str] = []
-        for name in sorted(self.loads):
-            _, verb, code, *order = name.split("_")
-            if verb == "dtype":
-                lines.append(f'{name} = np.dtype("{">" if order else "<"}{code}")')
-            elif verb == "none":
-                lines.append(f'{name} = np.empty(0, "<{code}").copy')
-            elif verb == "EMPTY":
-                lines.append(f'{name} = memoryview(b"").cast("{code}")')
-            elif verb in BY_COUNT:
-                codes = f'"{{}}" + _{code}' if code in "qQ" and not order else f'"{">" if order else ""}{{}}{code.replace(TRUTH, "?")}"'
-                lines.append(f'{name} = _ByCount({codes}, "{BY_COUNT[verb]}")')
-            else:
-                method = {"load": "unpack_from", "store": "pack_into", "whole": "pack"}[verb]
-                lines.append(f'{name} = Struct("{">" if order else "<"}{code.replace(TRUTH, "?")}").{method}')
+        lines = [*map(definition, sorted(self.loads))]
         lines += [f'{name} = Struct("{code}").pack_into' for code, name in self.structs.items()]
         if self.guesses:
             lines += ["_room = [256]", '"""The room that messages took."""']

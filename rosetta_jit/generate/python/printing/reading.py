@@ -39,6 +39,7 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
     """The list of numbers that lie in the message, or of rows that are numbers, of which ``row`` makes objects."""
     begin, stride = bare(expression(scope, at)), scope.lanes.stride(lane)
     part = f"data[{begin} : {begin} + {expression(scope, size)}]"
+    view = part.replace("data", "memoryview(data)", 1)
     if isinstance(slot, Number) and scope.numpy:
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
         dtype, number = scope.bool_dtype() if slot.scalar == "bool" else scope.dtype(slot.scalar, order), bare(expression(scope, count))
@@ -51,7 +52,7 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
             return f"[*{part}]"
         count = Const("i64", int(size.value) // stride) if isinstance(size, Const) else _divided(size, stride)
         code, order = "?" if slot.scalar == "bool" else CODES[slot.scalar], order or "<"
-        many = f'[*memoryview({part}).cast("?")]' if code == "?" else f'_many{"_turned" if order == ">" else ""}({part}, "{code}")'
+        many = f'[*{view}.cast("?")]' if code == "?" else f'_many{"_turned" if order == ">" else ""}({view}, "{code}")'
         if isinstance(count, Const):
             return many if count.value > SOME else f"[*{scope.struct(order, code * int(count.value), 'load')}(data, {begin})]"
         few = f"[*{scope.by_count(order, code, 'reads')}[{bare(expression(scope, count))}](data, {begin})]"
