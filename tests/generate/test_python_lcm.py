@@ -56,6 +56,23 @@ def test_messages_that_contain_their_own_type_are_read_and_written_by_functions(
     compare(given, INNER, NODE, {**INNER, "n": 1, "kids": [INNER]})
 
 
+@pytest.mark.parametrize("number", [-1, 1, 3, 1 << 20, (1 << 31) - 1, -(1 << 31)])
+def test_counts_that_cannot_be(number):
+    """What is checked of a count is checked where it is not 0, in the same order: of those that other numbers lie before, too."""
+    given = lcm("struct m { int32_t n; string name; m kids[n]; int32_t k; m others[k]; m more[n]; double last; }")
+    assert "        if count_2 < 0:" in text_of(given)
+    decode, encode = rj.Decoder.of("t.m", **given), rj.Encoder.of("t.m", **given)
+    leaf = {"name": "leaf", "last": 0.5}
+    inner = {**leaf, "n": 1, "kids": [leaf], "more": [leaf], "k": 1, "others": [leaf]}
+    message = bytes(encode(encode.holder_type.from_dict({**inner, "kids": [inner]})))
+    put = struct.pack(">i", number)
+    answers_as_the_library(
+        module(type_request("decode", "t.m", given)),
+        (decode, encode),
+        [message[:at] + put + message[at + 4 :] for at in range(8, len(message))],
+    )
+
+
 def nested(depth: int) -> bytes:
     return struct.pack(">ii", 1, 1) * depth + struct.pack(">ii", 1, 0)
 

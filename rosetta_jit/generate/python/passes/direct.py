@@ -6,6 +6,7 @@ from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.python.passes.late_fields import LateField
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
+from rosetta_jit.kernel.walk import expressions_of
 from rosetta_jit.model.layout import Row, Slot, Span
 from rosetta_jit.model.types import Struct
 from rosetta_jit.startup.dataclass import dataclass, field
@@ -44,8 +45,8 @@ class Direct:
     ``gathered`` are lanes of texts and of bytes, with the place and size of one in the message: it is appended where a statement sets where
     it starts. ``listed`` are the lanes of texts that are appended where they are checked.
     ``visits`` are the calls of `Descents` by name, whose rows become lists; of messages within others ``left`` has the lanes
-    that all of them share, by number: a list says how many more rows each may have. ``late_rows`` are the rows, by lane, that say whether
-    they have any list.
+    that all of them share, by number: a list says how many more rows each may have; ``checks`` is what is checked of the count of a visit
+    where there are any. ``late_rows`` are the rows, by lane, that say whether they have any list.
     """
 
     whole: set[int] = field(default_factory=set[int])
@@ -64,6 +65,7 @@ class Direct:
     listed: set[int] = field(default_factory=set[int])
     visits: dict[str, Visit] = field(default_factory=dict[str, Visit])
     left: dict[int, int] | None = None
+    checks: dict[str, nodes.Block] = field(default_factory=dict[str, "nodes.Block"])
     rows: dict[int, dict[nodes.Place, tuple[nodes.Expr, nodes.Expr]]] = field(
         default_factory=dict[int, "dict[nodes.Place, tuple[nodes.Expr, nodes.Expr]]"]
     )
@@ -74,10 +76,11 @@ class Direct:
     late_rows: dict[int, LateRow] = field(default_factory=dict[int, LateRow])
 
     def read(self) -> set[str]:
-        """The locals that say where texts and bytes are, which no statement may say any more."""
+        """The locals that say where texts and bytes are, which no statement may say any more, and those of checks."""
         rows = (place for each in self.rows.values() for place in each.values())
         spans = (*self.texts.values(), *self.placed.values(), *self.pieces.values(), *self.gathered.values(), *rows)
-        return {name for place in spans for expr in place for name in locals_in(expr)}
+        checks = (expr for block in self.checks.values() for stmt in block for expr in expressions_of(stmt))
+        return {name for expr in (*checks, *(expr for place in spans for expr in place)) for name in locals_in(expr)}
 
     def visit_at(self, lane: int, offset: int) -> Visit | None:
         """What fills the span of a row."""

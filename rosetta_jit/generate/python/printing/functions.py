@@ -16,6 +16,7 @@ from rosetta_jit.generate.python.passes.bools import with_bytes
 from rosetta_jit.generate.python.passes.constants import with_constants
 from rosetta_jit.generate.python.passes.empty_spans import without_empty_spans
 from rosetta_jit.generate.python.passes.groups import not_negative
+from rosetta_jit.generate.python.passes.late_checks import with_late_checks
 from rosetta_jit.generate.python.passes.late_fields import late_fields
 from rosetta_jit.generate.python.passes.late_rows import with_late_rows
 from rosetta_jit.generate.python.passes.local_names import Locals
@@ -159,8 +160,9 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
         body = without_empty_spans(ends_first(body), kernel.strides, known)
         body, scope.direct.late_rows = with_late_rows(body, kernel, objects.layout, objects.late_rows)
         body, scope.direct.fields = late_fields(body, kernel, objects.layout, known) if descents is None else (body, ())
-    behind = frozenset[str]()
+    checked, behind = body, frozenset[str]()
     if descents is not None:
+        body, scope.direct.checks = with_late_checks(body, descents.visits)
         scope.direct.visits, scope.direct.left, behind = descents.visits, descents.left, descents.behind()
     assert {number for each in scope.direct.fields for number in each.cases} <= {*map(id, blocks_within(body))}
     function.settled = settled(body)
@@ -169,7 +171,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
         scope.lists = objects.late_lists(scope)
     function.unasked = unasked_words(body, objects.layout, scope)
     function.read = read_names(without_words(body, function.unasked), scope.direct.read())
-    function.positive = not_negative(body, behind)
+    function.positive = not_negative(checked, behind)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, nodes.Reserve))
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))

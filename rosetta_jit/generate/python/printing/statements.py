@@ -332,7 +332,10 @@ def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
     name, at, count = scope.visited(visit), scope.locals.identifier(call.results[0].name), function.text(visit.count)
     function.line(f"{name} = []")
     function.line(f"{at} = {function.text(call.arguments[0])}")
-    with function.writer.indented(f"if {count} > 0:"):
+    checks = scope.direct.checks.get(call.routine, ())
+    with function.writer.indented(f"if {count}:" if checks else f"if {count} > 0:"):
+        for check in checks:
+            print_statement(function, check)
         take(function, visit.lane, count)
         if visit.shallow is not None:
             print_statement(function, visit.shallow)

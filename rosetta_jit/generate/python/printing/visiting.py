@@ -14,6 +14,7 @@ from rosetta_jit.generate.descents import Descents, NotNested
 from rosetta_jit.generate.python.passes.bools import with_bytes
 from rosetta_jit.generate.python.passes.borrowed import borrowed_block
 from rosetta_jit.generate.python.passes.groups import not_negative
+from rosetta_jit.generate.python.passes.late_checks import with_late_checks
 from rosetta_jit.generate.python.passes.search import FEW, direct
 from rosetta_jit.generate.python.passes.sums import ends_first, with_locals
 from rosetta_jit.generate.python.printing.printed import Function
@@ -53,10 +54,12 @@ def _reader(lane: int, descents: Descents, function: Function) -> tuple[Scope, l
     block = borrowed_block(with_locals(with_bytes(descents.rows[lane])), kernel, objects.layout)
     row = nodes.Place(lane, descents.row)
     block, scope.direct = direct(block, kernel, objects.layout, objects.inner_arrays, objects.blobs, few=0 if scope.numpy else FEW, row=row)
-    *stmts, last = ends_first(block)
+    function.positive = not_negative(block, descents.behind())
+    block, checks = with_late_checks(ends_first(block), descents.visits)
+    *stmts, last = block
     assert isinstance(last, nodes.Return)
-    scope.direct.visits, scope.direct.left = descents.visits, descents.left
-    function.read, function.positive = read_names(block, scope.direct.read()), not_negative(block, descents.behind())
+    scope.direct.visits, scope.direct.left, scope.direct.checks = descents.visits, descents.left, checks
+    function.read = read_names(block, scope.direct.read())
     at, depth = (scope.locals.identifier(each.name) for each in (descents.at, descents.depth))
     print_block(function, tuple(stmts))
     result = f"{objects.row(scope, lane)}, {function.text(last.position)}"
