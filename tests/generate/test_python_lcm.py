@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -221,3 +222,25 @@ def test_numbers_of_elements_are_checked_where_they_are_written(wishes):
         with pytest.raises(unit.EncodeError) as caught:
             unit.encode(replace(good, **{name: value}))
         assert caught.value.kind == kind
+
+
+@pytest.mark.parametrize(
+    "array",
+    ["a[n][k]", "a[n][3]", "a[n][2][k]", "a[n][n][3]", "a[2][n][k]", "a[n][k][k]", "a[n][2][2][k]", "a[n][k][n][2]"],
+)
+def test_bytes_of_one_size_are_taken_by_one_call(array):
+    """Where there are some, none of which is empty: else, and where the message ends too early, a loop finds what there is."""
+    given = lcm(f"struct m {{ int32_t n; int32_t k; byte {array}; int8_t last; }}")
+    if array != "a[n][2][2][k]":  # two rows at a time are few
+        assert "_pieces(" in text_of(given) or "map(list, _unpack_each(" in text_of(given)
+    decode, encode = rj.Decoder.of("t.m", **given), rj.Encoder.of("t.m", **given)
+    unit, messages = module(type_request("decode", "t.m", given)), list[bytes]()
+    for n, k in ((0, 0), (1, 1), (3, 2), (4, 0), (4, 1), (5, 3), (9, 4), (170, 2)):
+        sizes = [{"n": n, "k": k}.get(each) or int(each.strip("nk") or 0) for each in array[2:-1].split("][")]
+        value = bytes(range(sizes[-1]))
+        for size in reversed(sizes[:-1]):
+            value = [value] * size
+        messages.append(unit.encode(unit.m(n=n, k=k, a=value, last=7)))
+    for number, at in product((-1, 5, 1 << 20), (8, 12)):
+        messages += [each[:at] + struct.pack(">i", number) + each[at + 4 :] for each in messages[:7]]
+    answers_as_the_library(unit, (decode, encode), harmed(messages[:8], 20, array) + messages)

@@ -133,6 +133,23 @@ def is_not_negative(expr: nodes.Expr, known: frozenset[str] | set[str]) -> bool:
             return False
 
 
+ALWAYS = 1 << 20
+"""Rows that any message may have."""
+
+
+def bounded(check: nodes.Require | nodes.Expect) -> frozenset[nodes.Expr]:
+    """The numbers of rows that a message may have which passes a check: these take a byte each at least, or are few."""
+    match check:
+        case nodes.Require(_, nodes.Binary("mul", count, nodes.Const(_, value)) as size) if value >= 1:
+            return frozenset((size, count))
+        case nodes.Require(_, size):
+            return frozenset((size,))
+        case nodes.Expect(nodes.Compare("le", count, nodes.Const(_, most))) if most <= ALWAYS:
+            return frozenset((count,))
+        case _:
+            return frozenset()
+
+
 def turned(loop: nodes.For) -> tuple[nodes.Place, nodes.Expr, str] | None:
     """The array that a loop copies between a lane and the message, byte by byte turned around: its first row, its place, its type."""
     names = {each.name: each.value for each in loop.body if isinstance(each, nodes.Let)}

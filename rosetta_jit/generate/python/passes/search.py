@@ -187,7 +187,8 @@ class _Search(Texts):
         self.direct.appended.add(lane)
         self.direct.loops[loop.variable] = lane
         self.arrays(loop.body, nodes.Place(lane, row))
-        self.direct.listed |= {lane} if isinstance(element, Span) and (lane, 0) in self.direct.texts else set()
+        is_taken = (lane, 0) in self.direct.texts or (lane in self.blobs and (lane, 0) in self.direct.pieces)
+        self.direct.listed |= {lane} if isinstance(element, Span) and is_taken else set()
         return True
 
 

@@ -16,7 +16,7 @@ from rosetta_jit.kernel.terms import add, index, mul
 from rosetta_jit.model.layout import Number, Row, Slot
 from rosetta_jit.startup.dataclass import replace
 
-SOME = 100
+SOME = 160
 """Numbers of an array from which on a view of them is quicker than the struct module."""
 FEW_ROWS = 3
 """Rows up to which a loop takes no longer than reading all of them at once."""
@@ -159,7 +159,7 @@ def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int, made: C
         case SetField(Place(lane)) if made is not None:
             return f'[{made(scope)} for {_targets([scope.piece(lane, 0)])} in _unpack_each("{size}s", {part})]'
         case _:
-            return f'[each for (each,) in _unpack_each("{size}s", {part})]'
+            return f"_pieces(data, {begin}, {size}, {bare(expression(scope, count))})"
 
 
 def _targets(names: list[str]) -> str:

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rosetta_jit.generate.python.passes.groups import ALWAYS
+from rosetta_jit.kernel.nodes import Const, Expr
+
 if TYPE_CHECKING:
     from rosetta_jit.generate.python.printing.printed import Function
     from rosetta_jit.generate.python.printing.scope import Scope
 
 
-def reserve(function: Function, lane: int, count: str) -> None:
+def reserve(function: Function, lane: int, number: Expr) -> None:
     """The lines that make room for more rows."""
-    scope, name = function.scope, function.scope.lanes.rows(lane)
+    scope, name, count = function.scope, function.scope.lanes.rows(lane), function.text(number)
     if lane in scope.direct.appended and scope.direct.left is not None:
         take(function, lane, count)
         function.line(f"{name} = []")
         return
     if lane in scope.direct.appended:
-        with function.writer.indented(f"if {count} > most:"):
-            function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
+        if number not in scope.allowed and not (isinstance(number, Const) and number.value <= ALWAYS):
+            with function.writer.indented(f"if {count} > most:"):
+                function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
         function.line(f"{name} = []")
         return
     if lane and function.reserved[lane] == 1 and lane in function.outside and lane not in scope.rooms and not function.is_routine:

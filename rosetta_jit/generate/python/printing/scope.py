@@ -51,7 +51,7 @@ class Scope:
     bools. ``views`` are the lanes that it reaches, with the code of the view, empty for the bytes themselves; ``paths`` are the fields
     that lanes belong to; ``counted`` and ``rooms`` are lanes, ``loads`` functions that it needs, ``from_call`` what each call brings:
     its time and number, registers, object. ``small`` are the locals of 64 bits, without a sign, that are known to be below 2**63,
-    ``sums`` those that are sums.
+    ``sums`` those that are sums, ``allowed`` the numbers of rows that the message is known to be allowed.
     ``unpacked`` are rows, by lane and index, whose numbers are locals of a comprehension: it gets their types by offset.
     ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first; ``lists`` are
     the groups of lists that it may lack then.
@@ -77,6 +77,7 @@ class Scope:
     numpy: bool = False
     small: set[str] = field(default_factory=set[str])
     sums: dict[nodes.Expr, str] = field(default_factory=dict[nodes.Expr, str])
+    allowed: frozenset[nodes.Expr] = frozenset()
     unpacked: dict[tuple[int, str], dict[int, str]] = field(default_factory=dict[tuple[int, str], dict[int, str]])
 
     def note(self, name: str, *, is_small: bool) -> None:
@@ -84,7 +85,8 @@ class Scope:
         (self.small.add if is_small else self.small.discard)(name)
 
     def forget(self, names: Set[str]) -> None:
-        """Know no more of sums of locals that change."""
+        """Know no more of locals that change."""
+        self.allowed = frozenset(each for each in self.allowed if not locals_in(each) & names)
         self.sums = {each: name for each, name in self.sums.items() if not locals_in(each) & names}
 
     def view(self, lane: int, code: str) -> str:

@@ -8,7 +8,7 @@ from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.passes.bools import Bools, bools_read
-from rosetta_jit.generate.python.passes.groups import grouped, is_not_negative, scalar_of, turned
+from rosetta_jit.generate.python.passes.groups import bounded, grouped, is_not_negative, scalar_of, turned
 from rosetta_jit.generate.python.passes.mentions import assigned
 from rosetta_jit.generate.python.printing.calls import host_call, pass_on, tuple_of
 from rosetta_jit.generate.python.printing.expressions import expression, is_small, location, slice_of
@@ -17,7 +17,7 @@ from rosetta_jit.generate.python.printing.printed import Function
 from rosetta_jit.generate.python.printing.reading import numbers_read, rows_read, takes_text
 from rosetta_jit.generate.python.printing.reserving import reserve, take
 from rosetta_jit.generate.python.printing.rows_at_once import rows_at_once
-from rosetta_jit.generate.python.printing.scope import CODES
+from rosetta_jit.generate.python.printing.scope import CODES, Scope
 from rosetta_jit.generate.python.printing.switching import print_switch
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
@@ -32,7 +32,7 @@ OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed
 
 def print_block(function: Function, block: nodes.Block) -> None:
     """The statements of a block."""
-    before, sums = len(function.writer.lines), dict(function.scope.sums)
+    before, sums, allowed = len(function.writer.lines), dict(function.scope.sums), function.scope.allowed
     for number, late in enumerate(function.scope.direct.fields):
         if id(block) in late.cases:
             function.line(f"<late {number}>")
@@ -43,7 +43,7 @@ def print_block(function: Function, block: nodes.Block) -> None:
             _together(function, group)
     if len(function.writer.lines) == before:
         function.line("pass")
-    function.scope.sums = sums
+    function.scope.sums, function.scope.allowed = sums, allowed
     function.scope.forget(assigned(block))
 
 
@@ -74,6 +74,7 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
     match stmt:
         case nodes.Require(at, size, failure):
             fail_if(function, lacks(function, at, size), failure)
+            function.scope.allowed |= bounded(stmt)
         case nodes.Expect(condition, failure):
             if condition == FALSE:
                 fail(function, failure)
@@ -81,6 +82,7 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
                 _taken(function, taken, failure)
             else:
                 fail_if(function, function.text(folded(nodes.Unary("not", condition))), failure)
+                function.scope.allowed |= bounded(stmt)
         case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
             function.scope.note(name, is_small=isinstance(stmt, nodes.Let) and is_small(value, function.scope.small))
             if name in function.read:
@@ -94,7 +96,7 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             _effect(function, stmt)
         case nodes.Reserve(lane, count):
-            reserve(function, lane, function.text(count))
+            reserve(function, lane, count)
         case nodes.Advance(lane, count):
             function.line(f"{function.scope.used(lane)} += {function.text(count)}")
         case nodes.Return():
@@ -149,7 +151,7 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
             if lane not in scope.direct.listed:
                 function.line(f"{scope.lanes.rows(lane)}.append({slice_of(scope, *scope.direct.gathered[lane])}){origin}")
         case nodes.SetField(nodes.Place(lane, _, offset), _) if (lane, offset) in scope.direct.pieces:
-            function.line(f"{scope.piece(lane, offset)} = {slice_of(scope, *scope.direct.pieces[lane, offset])}{origin}")
+            function.line(f"{_piece(scope, lane, offset)}{origin}")
         case nodes.SetField(nodes.Place(lane) as place, _) if place in scope.direct.rows.get(lane, ()):
             number = [*scope.direct.rows[lane]].index(place)
             function.line(f"{scope.element(lane, number)} = {_row_of(function, lane, *scope.direct.rows[lane][place])}{origin}")
@@ -177,6 +179,12 @@ def _effect(function: Function, stmt: nodes.Effect) -> None:
 def _target(function: Function, place: nodes.Place, value: nodes.Expr) -> str:
     """What a field is assigned to."""
     return function.scope.place(place, type_of(value), lambda: expression(function.scope, place.row))
+
+
+def _piece(scope: Scope, lane: int, offset: int) -> str:
+    """The line that takes bytes out of the message: for a list of them, or for a field."""
+    piece = slice_of(scope, *scope.direct.pieces[lane, offset])
+    return f"{scope.lanes.rows(lane)}.append({piece})" if lane in scope.direct.listed else f"{scope.piece(lane, offset)} = {piece}"
 
 
 def _taken(function: Function, taken: str, failure: nodes.Failure) -> None:

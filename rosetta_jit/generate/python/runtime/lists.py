@@ -6,7 +6,9 @@ from __future__ import annotations
 
 from array import array
 from struct import Struct
+from struct import iter_unpack as _unpack_each
 from struct import pack as _pack
+from struct import unpack_from as _unpack_from
 from typing import Any
 
 _q = "n" if Struct("n").size == 8 else "q"
@@ -42,6 +44,13 @@ def _many_turned(part: memoryview, code: str) -> list[Any]:
     numbers.frombytes(part)
     numbers.byteswap()
     return numbers.tolist()
+
+
+def _pieces(data: bytes, begin: int, size: int, count: int) -> list[bytes]:
+    """Bytes of one size, which lie one behind the other in a message."""
+    if count < 160:
+        return [*_unpack_from(f"{size}s" * count, data, begin)]
+    return [each for (each,) in _unpack_each(f"{size}s", data[begin : begin + count * size])]
 
 
 def _fitting(code: str, numbers: Any) -> Any:
