@@ -133,3 +133,21 @@ def test_a_field_may_be_called_unknown():
     unit, programs = module(type_request("decode", "t.M", given)), (rj.Decoder.of("t.M", **given), rj.Encoder.of("t.M", **given))
     parts = (b"\x08\x05", b"\x12\x01a", UNKNOWN)
     answers_as_the_library(unit, programs, [b"", *parts, b"".join(parts), b"".join(reversed(parts))])
+
+
+@pytest.mark.parametrize("second", ["map<sfixed32, N> g = 4;", "map<string, N> g = 4; map<int64, N> h = 6;"])
+def test_maps_that_share_the_messages_of_a_type_that_contains_itself(second):
+    """What several fields need is made for the message, whichever of them comes."""
+    options = protobuf(
+        f"message M {{ repeated N a = 1; int32 b = 2; map<int64, N> f = 3; {second} repeated sint64 i = 5 [packed = false]; }}"
+        "message N { M m = 1; oneof o { int32 x = 2; M y = 3; } map<int64, string> t = 4; }"
+    )
+    decode, encode = rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options)
+    inner = {"m": {"b": 1, "f": {2: {"x": 3}}}, "t": {1: "a"}}
+    keys = {"g": {"a" if "string" in second else 1: inner}, "h": {1: inner}}
+    values = [{}, {"b": 1}, {"a": [inner]}, {"f": {1: inner}}, {"a": [inner, {}], "f": {1: inner, 2: {}}, "i": [-1]}, {"g": keys["g"]}]
+    messages = [bytes(encode(encode.holder_type.from_dict(each))) for each in values]
+    if "h" in second:
+        messages.append(bytes(encode(encode.holder_type.from_dict({**keys, "f": {}}))))
+    unit = module(type_request("decode", "t.M", options))
+    answers_as_the_library(unit, (decode, encode), harmed(messages, 10, second))

@@ -14,6 +14,7 @@ return M([...] if has_joints else [])
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 
 from rosetta_jit.generate.python.passes.mentions import blocks_within, lanes_of, places_of
@@ -56,7 +57,10 @@ def late_fields(block: Block, kernel: Kernel, layout: Layout, known: Collection[
     if kernel.kept or not isinstance(layout.root, Row):
         return block, ()
     taken = {*known, *(lane for routine in kernel.routines for stmt, _ in statements(routine.body) for lane in lanes_of(stmt))}
-    wanted = [each for each in _candidates(layout.root, layout) if not each.lanes & taken]
+    candidates = [*_candidates(layout.root, layout)]
+    owners = Counter(lane for each in candidates for lane in each.lanes)
+    taken |= {lane for lane, count in owners.items() if count > 1}
+    wanted = [each for each in candidates if not each.lanes & taken]
     firsts = {stmt.value.lane: stmt.name for stmt in block if isinstance(stmt, Let) and isinstance(stmt.value, Used)}
     cases = _Cases(wanted)
     cases.block(_without_ends(block, wanted, firsts), NOBODY)
