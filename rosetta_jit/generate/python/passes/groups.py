@@ -150,6 +150,15 @@ def bounded(check: nodes.Require | nodes.Expect) -> frozenset[nodes.Expr]:
             return frozenset()
 
 
+def without_sign(condition: nodes.Expr, known: frozenset[str]) -> nodes.Expr:
+    """A condition that does not ask whether an integer is 0 or more which cannot be another one, as those of the names cannot."""
+    match condition:
+        case nodes.Binary("and", nodes.Compare("ge", value, nodes.Const(_, 0)), nodes.Compare("le", same, _) as most):
+            return most if value == same and is_not_negative(value, known) else condition
+        case _:
+            return condition
+
+
 def turned(loop: nodes.For) -> tuple[nodes.Place, nodes.Expr, str] | None:
     """The array that a loop copies between a lane and the message, byte by byte turned around: its first row, its place, its type."""
     names = {each.name: each.value for each in loop.body if isinstance(each, nodes.Let)}

@@ -8,7 +8,7 @@ from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.passes.bools import Bools, bools_read
-from rosetta_jit.generate.python.passes.groups import bounded, grouped, is_not_negative, scalar_of, turned
+from rosetta_jit.generate.python.passes.groups import bounded, grouped, is_not_negative, scalar_of, turned, without_sign
 from rosetta_jit.generate.python.passes.mentions import assigned
 from rosetta_jit.generate.python.printing.calls import host_call, pass_on, tuple_of
 from rosetta_jit.generate.python.printing.expressions import expression, is_small, location, slice_of
@@ -81,7 +81,8 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             elif (taken := takes_text(function.scope, condition)) is not None:
                 _taken(function, taken, failure)
             else:
-                fail_if(function, function.text(folded(nodes.Unary("not", condition))), failure)
+                unsigned = without_sign(condition, function.positive)
+                fail_if(function, function.text(folded(nodes.Unary("not", unsigned))), failure)
                 function.scope.allowed |= bounded(stmt)
         case nodes.Let(name, value) | nodes.Var(name, value) | nodes.Assign(name, value):
             function.scope.note(name, is_small=isinstance(stmt, nodes.Let) and is_small(value, function.scope.small))
