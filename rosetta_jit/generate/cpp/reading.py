@@ -67,7 +67,7 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
         memory=memory,
         again="encode_any(source, &bytes[0], *size)" if is_straight else f"written(&given, {memory}->message, *{memory}, &bytes[0], *size)",
         local=f"    {row} row;" if is_straight else f"    {row} &row = {memory}->message;",
-        clear="" if _is_collected(unit) else "    row = {};",
+        clear="" if _is_collected(unit) else f"    {'row = {}' if is_straight else 'rosetta_jit::detail::empty(row)'};",
         reset="\n".join(begun),
         bind="\n".join(_read(lanes.rows(each.lane), each) for each in directs),
         size=run(size, "failure"),

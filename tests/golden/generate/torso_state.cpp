@@ -470,7 +470,7 @@ rosetta_jit::error unplaced(rosetta_jit::error found)
 void gather(const ::torso_state::holder &source, torso_state_source *holder, torso_state_JointAngles &row)
 {
     static_cast<void>(holder);
-    row = {};
+    rosetta_jit::detail::empty(row);
     holder->unknown.clear();
     holder->angles.read(source.angles());
     row.angles = {0, holder->angles.used};
