@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 
 import pytest
@@ -59,6 +60,49 @@ def test_bytes_of_a_class_are_set_where_they_are(tmp_path):
     text = read_alike(tmp_path, "ros1", Wishes(holder="ros1", include="rj_message.h"))
     assert "flags = rosetta_jit::detail::sized<uint8_t>(given_object.flags, count);" in text
     assert "nine = rosetta_jit::detail::rows_of<uint8_t, 9>(given_object.nine);" in text
+
+
+GRID = "package rj;\nstruct grid_t {\n  int8_t rows;\n  int8_t columns;\n  boolean first[rows];\n  boolean flags[rows][columns];\n}\n"
+
+
+@cpp.needs_cpp
+@pytest.mark.skipif(shutil.which("lcm-gen") is None, reason="lcm-gen is not installed")
+def test_flags_of_lists_within_lists_are_read_several_at_once(tmp_path):
+    options = {"encoding": "lcm", "schema": {"rj/grid_t.lcm": GRID}}
+    texts = generated(type_request("decode", "rj.grid_t", options), "cpp", BOTH, "unit", Wishes(holder="lcm", include="rj/grid_t.hpp"))
+    assert "rosetta_jit::detail::read_flags_of(flags_elements, 0, bytes + next, " in texts["unit.cpp"]
+    (tmp_path / "grid_t.lcm").write_text(GRID)
+    subprocess.run(["lcm-gen", "--cpp", "--cpp-hpath", tmp_path, tmp_path / "grid_t.lcm"], check=True)
+    encode = rj.Encoder.of("rj.grid_t", **options)
+    sizes = [(1, 1), (3, 4), (2, 7), (4, 8), (2, 33), (3, 3)]
+    grids = [[[(row + column) % 3 == 0 for column in range(columns)] for row in range(rows)] for rows, columns in sizes]
+    good = [bytes(encode({"rows": len(grid), "columns": len(grid[0]), "first": [True] * len(grid), "flags": grid})) for grid in grids]
+    messages = [message[:end] for message in good for end in range(len(message) + 1)]
+    messages += [message[:at] + b"\2" + message[at + 1 :] for message in good for at in range(len(message))]
+    name = cpp.write(tmp_path, texts)
+    same(answers(cpp.program(tmp_path, name, options=CAREFUL), messages), rj.Decoder.of("rj.grid_t", **options), encode, messages)
+
+
+FEW_FLAGS = """#include <cstdint>
+#include <vector>
+namespace rj {
+struct Message { std::vector<std::uint8_t> flags; std::vector<double> many; };
+}
+"""
+
+
+@cpp.needs_cpp
+def test_a_message_without_flags_is_read_in_the_header(tmp_path):
+    (tmp_path / "rj_message.h").write_text(FEW_FLAGS)
+    options = {"encoding": "ros1", "schema": {"rj/msg/Message.msg": "bool[] flags\nfloat64[] many\n"}}
+    wishes = Wishes(holder="ros1", include="rj_message.h")
+    texts = generated(type_request("decode", "rj/Message", options), "cpp", BOTH, "unit", wishes)
+    assert "ROSETTA_JIT_INLINE static bool is_read_empty(" in texts["unit.hpp"]
+    encode = rj.Encoder.of("rj/Message", **options)
+    good = [bytes(encode({"flags": [True] * count, "many": [0.5] * count})) for count in (3, 0, 1, 0)]
+    messages = [message[:end] + more for message in good for end in range(len(message) + 1) for more in (b"", b"\1")]
+    name = cpp.write(tmp_path, texts)
+    same(answers(cpp.program(tmp_path, name, options=CAREFUL), messages), rj.Decoder.of("rj/Message", **options), encode, messages)
 
 
 OF_BITS = """#include <array>

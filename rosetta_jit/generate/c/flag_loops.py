@@ -71,9 +71,12 @@ def flags_done(scope: Scope, flags: Flags, count: str) -> str | None:
     if lane in lanes.within and not flags.is_read:
         view = ", ".join(list_within(scope, lane, flags.row))
         return f"rosetta_jit::detail::copy_flags_of({scope.takes('bytes')} + {expression(scope, flags.at)}, {view}, {count})"
-    if lanes.dialect != "c++" or lane in lanes.addressed | lanes.viewed | lanes.opened or lanes.stride(lane) != 1:
+    if lanes.dialect != "c++" or lane in lanes.addressed | lanes.viewed or lanes.stride(lane) != 1:
         return None
     rows = f"{scope.rows(lane)} + {expression(scope, flags.row)}"
     message = f"{scope.takes('bytes')} + {expression(scope, flags.at)}"
+    if lane in lanes.opened:
+        elements = f"{scope.rows(lane)}, {expression(scope, flags.row)}"
+        return f"rosetta_jit::detail::read_flags_of({elements}, {message}, {count})" if flags.is_read else None
     name, target, source = ("read_flags", rows, message) if flags.is_read else ("copy_flags", message, rows)
     return f"rosetta_jit::detail::{name}({target}, {source}, {count})"

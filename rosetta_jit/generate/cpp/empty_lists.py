@@ -65,7 +65,9 @@ def _of_no_more(body: Block, lists: frozenset[int], counts: set[str], *, anywher
                 values[name] = NONE
             case nodes.Var(name, value):
                 found.append(nodes.Let(name, value))
-            case nodes.Reserve(lane, count) | nodes.Advance(lane, count) if lane in lists and count == NONE:
+            case nodes.Reserve(lane, count) if count == NONE and (anywhere or lane in lists):
+                pass
+            case nodes.Advance(lane, count) if lane in lists and count == NONE:
                 pass
             case nodes.Expect(nodes.IsText(_, size)) if size == NONE:
                 pass

@@ -1044,6 +1044,16 @@ inline std::int64_t read_flags(std::uint8_t *rows, const unsigned char *bytes, s
     return done;
 }
 
+/* The same into elements of a list, which are bytes one behind the other, or not. */
+template <class Elements> ROSETTA_JIT_INLINE std::int64_t read_flags_of(Elements elements, std::int64_t row, const unsigned char *bytes, std::int64_t count) noexcept
+{
+    if constexpr (std::is_pointer_v<Elements> && sizeof(*elements) == 1) {
+        return read_flags(reinterpret_cast<std::uint8_t *>(elements + row), bytes, count);
+    } else {
+        return 0;
+    }
+}
+
 /* Writes bools as long as there is room. */
 inline std::int64_t write_flags(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t &number, std::int64_t count, const std::uint8_t *rows) noexcept
 {
