@@ -58,11 +58,13 @@ TYPES = {
         {"first": 1, "statuses": STATUSES, "last": "end"},
     ),
     "arrays": ("string name\nfloat64[] many\nint16[] few\nuint8 last\n", {"name": "n", "many": [1.0, 2.0, 3.0], "few": [-1, 2], "last": 4}),
+    "bytes": ("int32[] some\nint64[3] three\nuint8[] data\n", {"some": [1, 2], "three": [1, 2, 3], "data": b"d" * 70}),
 }
 OTHERS = {
     "text": {"data": "\u00e4\u00f6\u20ac"},
     "text behind numbers": {"frame": "\U0001f916 and more"},
     "arrays": {"name": ""},
+    "bytes": {"data": b"some"},
     "lists before arrays": {"names": ["one", "another"]},
     "lists of texts": {"names": ["one"], "others": ["another", ""]},
     "lists of numbers": {"gaps": GAPS[:16], "points": POINTS[:17]},
@@ -74,11 +76,13 @@ OTHERS = {
     "a list of flags": {"flags": [{"set": False, "rest": 1}] * 2},
 }
 """What the source file reads, as lists that have many elements, or texts that have nothing."""
-EMPTY_IN_CDR = {"lists of numbers", "a list of numbers", "a list of flags", "lists of texts", "bytes and a list of texts"}
+EMPTY_IN_CDR = {"lists of numbers", "a list of numbers", "a list of flags", "lists of texts", "bytes and a list of texts", "bytes"}
 """Texts of CDR have a byte behind them, and so are never empty."""
 EMPTY = {*TYPES} - {"numbers", "numbers behind bytes", "triangles"}
 WRITTEN = {*TYPES}
 IN_HEADER = {*TYPES} - {"numbers behind bytes"}
+ONE_LENGTH = {"text", "text behind numbers", "a list of numbers", "a list of flags"}
+"""What has several texts or lists is read by a function that is called, where an empty message is read without one."""
 ALIGNED = {"poses between texts"}
 """What lies elsewhere in each message of CDR: elements of a list whose places only a loop says."""
 
@@ -116,7 +120,9 @@ def test_messages_that_are_harmed_get_the_same_answers(type_, units):
     options = {"encoding": encoding, "schema": schema(type_)}
     is_found = encoding == "ros1" or type_ not in ALIGNED
     assert ("static bool is_read(" in header) == (type_ in IN_HEADER and is_found)
-    assert ("static bool is_read_empty(" in header) == (type_ in (EMPTY if encoding == "ros1" else EMPTY_IN_CDR))
+    is_read_empty = type_ in (EMPTY if encoding == "ros1" else EMPTY_IN_CDR)
+    assert ("static bool is_read_empty(" in header) == is_read_empty
+    assert ("ROSETTA_JIT_APART static bool is_read(" in header) == (is_read_empty and type_ not in ONE_LENGTH)
     assert ("put_at_once(" in header) == (type_ in WRITTEN and is_found)
     assert ("statuses_values_list::at(" in header) == (type_ == "lists within lists" and encoding == "ros1")
     values = TYPES[type_][1]

@@ -40,16 +40,17 @@ PARAMETERS = frozenset({"given_object", "bytes", "end"})
 """What such a decoder is given."""
 
 
-def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes]) -> str:
-    """The statements of such a decoder, empty where there is none; ``lanes`` say how the kernel reaches the object.
+def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes]) -> tuple[str, int]:
+    """The statements of such a decoder, empty where there is none, and how many texts, arrays and lists they set that have a length.
 
-    ``apart`` are kernel and lanes of a decoder that opens all lists.
+    ``lanes`` say how the kernel reaches the object, ``apart`` are kernel and lanes of a decoder that opens all lists.
     """
     found = _reached(kernel, lanes, *apart)
     if found is None or two_roundings((kernel,)):
-        return ""
+        return "", 0
     checks, effects, lanes = found
-    return _printed(kernel, fewer(checks, is_sized=not any(_has_length(lanes, each) for each in effects)), effects, lanes)
+    lengths = sum(_has_length(lanes, each) for each in effects)
+    return _printed(kernel, fewer(checks, is_sized=lengths == 0), effects, lanes), lengths
 
 
 def of_no_elements_at_once(kernel: Kernel, lanes: Lanes) -> str:

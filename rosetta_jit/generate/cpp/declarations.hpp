@@ -23,6 +23,14 @@ $statements
         return true;
     }
 
+/* == read_at_once_called_private == */
+    /* Reads a message as nearly all are; false where it is another one, or something is wrong with it. */
+    ROSETTA_JIT_APART static bool is_read(const unsigned char *__restrict bytes, std::int64_t end, holder &given_object)
+    {
+$statements
+        return true;
+    }
+
 /* == read_empty_at_once_private == */
     /* Reads a message whose texts and lists are all empty; false where it is another one. */
     ROSETTA_JIT_INLINE static bool is_read_empty(const unsigned char *__restrict bytes, std::int64_t end, holder &given_object)

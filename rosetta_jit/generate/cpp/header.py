@@ -29,9 +29,13 @@ RESET = (
 
 @dataclass(frozen=True, slots=True)
 class AtOnce:
-    """The statements that read a message in the header, or an empty one, and those that write one, or such; empty where it cannot be."""
+    """The statements that read a message in the header, or an empty one, and those that write one, or such; empty where it cannot be.
+
+    ``reads_lengths`` is how many texts, arrays and lists are set by those that read one.
+    """
 
     reads: str = ""
+    reads_lengths: int = 0
     reads_empty: str = ""
     puts: str = ""
     puts_empty: str = ""
@@ -64,7 +68,8 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
             Template(_declarations()[f"{name}_private"]).substitute(statements=text.rstrip())
             for name, text in (
                 ("read_empty_at_once", there.reads_empty),
-                ("read_at_once", there.reads),
+                ("read_at_once", "" if _is_called(there) else there.reads),
+                ("read_at_once_called", there.reads if _is_called(there) else ""),
                 ("decode_any", "any" if "borrow" in unit.kernels else ""),
                 ("put_empty_at_once", there.puts_empty),
                 ("put_at_once", there.puts),
@@ -77,6 +82,11 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
         around="\n".join(Template(text).substitute(words) for _, text in around),
     )
+
+
+def _is_called(there: AtOnce) -> bool:
+    """Whether what reads a message is called, so that what reads an empty one stays short enough to stand in place of a call."""
+    return there.reads_empty != "" and there.reads_lengths > 1
 
 
 def _state(unit: Unit) -> str:

@@ -39,7 +39,7 @@ def files(unit: Unit) -> dict[str, str]:
     decoder = decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes, inner) if "borrow" in unit.kernels else None
     short = decoder if decoder is None or inner is None else inner.without(*decoder)
     there = AtOnce(
-        "" if short is None else at_once(*short, short if inner is not None else open_decoder_of(unit, manners, parts.lanes)),
+        *(("", 0) if short is None else at_once(*short, short if inner is not None else open_decoder_of(unit, manners, parts.lanes))),
         "" if short is None else of_no_elements_at_once(*short),
         *(put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else ("", "")),
     )

@@ -515,6 +515,30 @@ inline void copy_bytes(void *target, std::int64_t to, const void *source, std::i
     }
 }
 
+/* Copies 32 to 64 bytes: the first ones and the last ones, some of which may be the same. */
+ROSETTA_JIT_INLINE void copy_halves(unsigned char *at, const unsigned char *begin, std::int64_t size) noexcept
+{
+    unsigned char first[16], second[16], third[16], last[16];
+    std::memcpy(first, begin, 16);
+    std::memcpy(second, begin + 16, 16);
+    std::memcpy(third, begin + size - 32, 16);
+    std::memcpy(last, begin + size - 16, 16);
+    std::memcpy(at, first, 16);
+    std::memcpy(at + 16, second, 16);
+    std::memcpy(at + size - 32, third, 16);
+    std::memcpy(at + size - 16, last, 16);
+}
+
+/* Copies more than 32 bytes: a call within the program takes less time than one of the C library. */
+ROSETTA_JIT_APART inline void copy_more(unsigned char *at, const unsigned char *begin, std::int64_t size) noexcept
+{
+    if (size <= 64) {
+        copy_halves(at, begin, size);
+    } else {
+        std::memcpy(at, begin, static_cast<std::size_t>(size));
+    }
+}
+
 /* Copies bytes, of which there are few nearly always, as in texts. */
 inline void copy_few(void *target, std::int64_t to, const void *source, std::int64_t from, std::int64_t size) noexcept
 {
@@ -525,7 +549,7 @@ inline void copy_few(void *target, std::int64_t to, const void *source, std::int
         return;
     }
     if (size > 32) {
-        std::memcpy(at, begin, static_cast<std::size_t>(size));
+        copy_more(at, begin, size);
     } else if (size >= 16) {
         unsigned char first[16], last[16];
         std::memcpy(first, begin, 16);
@@ -558,16 +582,8 @@ inline void copy_numbers(void *target, std::int64_t to, const void *source, std:
     const unsigned char *const begin = static_cast<const unsigned char *>(source) + from;
     if (size > 64) {
         std::memcpy(at, begin, static_cast<std::size_t>(size));
-    } else if (size > 32) { /* the first ones and the last ones, some of which may be the same */
-        unsigned char first[16], second[16], third[16], last[16];
-        std::memcpy(first, begin, 16);
-        std::memcpy(second, begin + 16, 16);
-        std::memcpy(third, begin + size - 32, 16);
-        std::memcpy(last, begin + size - 16, 16);
-        std::memcpy(at, first, 16);
-        std::memcpy(at + 16, second, 16);
-        std::memcpy(at + size - 32, third, 16);
-        std::memcpy(at + size - 16, last, 16);
+    } else if (size > 32) {
+        copy_halves(at, begin, size);
     } else {
         copy_few(target, to, source, from, size);
     }
@@ -1532,9 +1548,22 @@ ROSETTA_JIT_INLINE void assign(std::string &target, const unsigned char *bytes, 
     }
 }
 
-template <class Memory> void assign(std::vector<std::uint8_t, Memory> &target, const unsigned char *bytes, std::int64_t count)
+/* Bytes of another number. */
+template <class Memory> ROSETTA_JIT_APART void assign_other(std::vector<std::uint8_t, Memory> &target, const unsigned char *bytes, std::int64_t count)
 {
     target.assign(bytes, bytes + count);
+}
+
+/* As many as there were are written where they are. */
+template <class Memory> ROSETTA_JIT_INLINE void assign(std::vector<std::uint8_t, Memory> &target, const unsigned char *bytes, std::int64_t count)
+{
+    if (count == 0) {
+        target.clear();
+    } else if (count_of(target) == count) {
+        copy_few(target.data(), 0, bytes, 0, count);
+    } else {
+        assign_other(target, bytes, count);
+    }
 }
 
 /* The rows of a span. Where its count is negative its bytes lie in the message. */
