@@ -192,3 +192,36 @@ def test_lists_of_pointers_become_rows():
     for holder, reads in (("protobuf", False), ("own", True)):
         text = generated(request, "cpp", BOTH, "unit", Wishes(holder=holder))["unit.cpp"]
         assert ("_row::list::at(" in text) == reads
+
+
+ALIKE = {
+    "rj/piece_t.lcm": "package rj;\nstruct piece_t {\n  int8_t kind;\n  float corner[3];\n}\n",
+    "rj/group_t.lcm": "package rj;\nstruct group_t {\n  string name;\n  int16_t count;\n  piece_t pieces[count];\n}\n",
+    "rj/all_t.lcm": """package rj;
+struct all_t {
+  int32_t groups;
+  group_t group[groups];
+  int32_t count;
+  piece_t pieces[count];
+  string last;
+}
+""",
+}
+"""A kernel that measures has fewer locals than one that writes: those of one name have other values."""
+
+
+@cpp.needs_cpp
+def test_lists_are_found_by_the_locals_of_each_function(tmp_path):
+    options = {"encoding": "lcm", "schema": ALIKE}
+    texts = generated(type_request("decode", "rj.all_t", options), "cpp", BOTH, "unit")
+    assert all(f"unit_{each}_row::list::at(" in texts["unit.cpp"] for each in ("group_pieces", "group_pieces_corner", "pieces_corner"))
+    decode, encode = (of("rj.all_t", **options) for of in (rj.Decoder.of, rj.Encoder.of))
+    pieces = [{"kind": each, "corner": [0.5 * each, 1.0, -each]} for each in range(4)]
+    groups = [{"name": "n" * each, "count": each, "pieces": pieces[:each]} for each in range(4)]
+    sizes = [(0, 0), (1, 0), (0, 1), (4, 3), (2, 2)]
+    values = [
+        {"groups": some, "group": groups[4 - some :], "count": count, "pieces": pieces[:count], "last": "end"} for some, count in sizes
+    ]
+    good = [bytes(encode(each)) for each in values]
+    messages = [*good, *harmed(good, 20, "alike"), *(message[:end] for message in good for end in range(len(message))), *good]
+    same(answers(cpp.program(tmp_path, cpp.write(tmp_path, texts), options=CAREFUL), messages), decode, encode, messages)

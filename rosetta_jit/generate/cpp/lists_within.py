@@ -9,7 +9,7 @@ reach the elements by nothing but the address in the row, or a local that has it
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from string import Template
 
 from rosetta_jit.generate.c.rows import path_to
@@ -31,9 +31,9 @@ ELEMENT = Template("std::declval<const rosetta_jit::detail::element_type<decltyp
 
 @dataclass(frozen=True, slots=True)
 class _Uses:
-    """What kernels do that read objects: all that names a lane, by the lane; what locals are, by their names, which may change.
+    """What a function of a kernel does that reads objects: all that names a lane, by the lane; what locals are, by their names.
 
-    ``in_rounds`` are the lanes that a function reads one number after another.
+    ``changed`` are locals that may change, ``in_rounds`` lanes that another function reads one number after another.
     """
 
     by_lane: Mapping[int, list[Stmt | Expr]]
@@ -48,7 +48,7 @@ def lists_within(walk: Walk) -> dict[int, ListWithin]:
     candidates = [] if wires_of(walk.unit) else [*_within(walk, *root, 0, set())]
     if not candidates or not {"encode", "size"} & set(map(kind_of, walk.unit.kernels)):
         return {}
-    uses, found = _uses(_blocks(walk.unit)), dict[int, ListWithin]()
+    uses, found = [*map(_uses, _blocks(walk.unit))], dict[int, ListWithin]()
     for each, lane, offset in candidates:
         slot = walk.unit.layout.lanes[each.direct.lane].element
         if (
@@ -65,10 +65,10 @@ def _blocks(unit: Unit) -> Iterator[Block]:
         yield from (*kernel.bodies, *(routine.body for routine in kernel.routines))
 
 
-def _uses(blocks: Iterable[Block]) -> _Uses:
+def _uses(block: Block) -> _Uses:
     by_lane, known = defaultdict[int, list[Stmt | Expr]](list), defaultdict[str, list[Expr]](list)
     changed, in_rounds = set[str](), set[int]()
-    for node in (node for block in blocks for node in nodes_of(block)):
+    for node in nodes_of(block):
         for lane in lanes_of(node):
             by_lane[lane].append(node)
         match node:
@@ -109,21 +109,36 @@ def _within(walk: Walk, type_: Type, slot: Slot, spot: Spot, lane: int, visited:
             return
 
 
-def _found_by(walk: Walk, listed: Listed, lane: int, offset: int, uses: _Uses) -> Within | None:
-    """How kernels find the elements of a list; None where they do more than to read fields of its rows and copy rows to the message."""
+def _found_by(walk: Walk, listed: Listed, lane: int, offset: int, uses: Collection[_Uses]) -> Within | None:
+    """How kernels find the elements of a list; None where they do more than to read fields of its rows and copy rows to the message.
+
+    Locals have the address of a list in functions of their own: elsewhere one of the same name may be anything.
+    """
     own = listed.direct.lane
-    within, element = Within(f"{row_name(walk.lanes, own)}::list", lane, offset, frozenset()), walk.lanes.all[own].element
-    starts = (name for name, values in uses.locals.items() if name not in uses.changed and all(map(within.is_start, values)))
-    within = replace(within, starts=frozenset(starts))
+    within = Within(f"{row_name(walk.lanes, own)}::list", lane, offset, frozenset())
+    starts = [frozenset(_starts(each, within)) for each in uses]
+    within = replace(within, starts=frozenset[str]().union(*starts))
+    is_found = all(
+        own not in each.in_rounds and all(_is_read(walk, node, within, names) for node in each.by_lane.get(own, ()))
+        for each, names in zip(uses, starts, strict=True)
+    )
+    return within if is_found else None
 
-    def is_read(node: Stmt | Expr) -> bool:
-        match node:
-            case Get(type_, place):
-                is_member = element is not None and path_to(element, place.offset, type_) is not None
-                return is_member and element_of(place.row, within) is not None
-            case Copy(target, Place(_, row, _)):
-                return not isinstance(target, Place) and element_of(row, within) is not None
-            case _:
-                return False
 
-    return within if own not in uses.in_rounds and all(map(is_read, uses.by_lane.get(own, ()))) else None
+def _starts(uses: _Uses, within: Within) -> Iterator[str]:
+    """The locals of a function that have the address of a list."""
+    return (name for name, values in uses.locals.items() if name not in uses.changed and all(map(within.is_start, values)))
+
+
+def _is_read(walk: Walk, node: Stmt | Expr, within: Within, starts: frozenset[str]) -> bool:
+    """Whether a field of a row is read, or rows are copied to the message, in a function in which ``starts`` have addresses of lists."""
+    match node:
+        case Get(type_, Place(lane, row, offset)):
+            element = walk.lanes.all[lane].element
+            is_member = element is not None and path_to(element, offset, type_) is not None
+        case Copy(target, Place(_, row, _)):
+            is_member = not isinstance(target, Place)
+        case _:
+            return False
+    found = element_of(row, replace(within, starts=starts))
+    return is_member and found is not None and found == element_of(row, within)
