@@ -65,6 +65,7 @@ def _feedback(count: int) -> Subject:
 SHORT = {
     "Float64": Subject("std_msgs/Float64", "ros1", _doubles(1)),
     "Bool": Subject("std_msgs/Bool", "ros1", b"\1"),
+    "String, 40 characters": Subject("std_msgs/String", "ros1", struct.pack("<I40s", 40, 40 * b"x")),
     "Polygon, 4 points": Subject("geometry_msgs/Polygon", "ros1", struct.pack("<I12f", 4, *range(12))),
     "JoyFeedbackArray, 4 elements": _feedback(4),
     "JoyFeedbackArray, 2 elements": _feedback(2),
@@ -90,6 +91,7 @@ def _matrices(each: int) -> bytes:
 
 
 LCM_MATRICES = Subject("lcmtest.multidim_array_t", "lcm", _matrices(10))
+LCM_BOOLS = Subject("lcmtest.bools_t", "lcm", struct.pack(">Q4?2b", 2567030712253961991, True, False, True, True, 6, 6) + 42 * b"\1")
 
 
 def _nodes(depth: int) -> bytes:

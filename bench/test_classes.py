@@ -11,6 +11,7 @@ from bench.report import words
 from bench.subjects import (
     DIAGNOSTICS,
     FLAGS_T,
+    LCM_BOOLS,
     LCM_DOUBLES,
     LCM_EXAMPLE,
     LCM_FLAGS,
@@ -57,6 +58,7 @@ LCM = {
     "LCM example_t": (LCM_EXAMPLE, peers.IDL / "lcm" / "exlcm" / "example_t.lcm"),
     "LCM, 1,000 doubles": (LCM_DOUBLES, peers.IDL / "lcm" / "rjtest" / "doubles_t.lcm"),
     "LCM, 64 bools": (LCM_FLAGS, FLAGS_T),
+    "LCM bools_t, 6 x 6": (LCM_BOOLS, peers.IDL / "lcm" / "lcmtest" / "bools_t.lcm"),
     MATRICES: (LCM_MATRICES, peers.IDL / "lcm" / "lcmtest" / "multidim_array_t.lcm"),
     NODES: (LCM_NODES, peers.IDL / "lcm" / "exlcm" / "node_t.lcm"),
 }
