@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
+    from rosetta_jit.errors import BrokenPackage
+
 
 @cache
 def offered(group: str) -> tuple[EntryPoint, ...]:
@@ -42,11 +44,16 @@ def _loaded(offer: EntryPoint) -> object:
     try:
         return offer.load()
     except Exception as error:
-        from rosetta_jit.errors import BrokenPackage
+        package = offer.module if offer.dist is None else offer.dist.name
+        raise broken(package, f"{offer.group}: {offer.name} = {offer.value}", error) from error
 
-        package, entry = offer.module if offer.dist is None else offer.dist.name, f"{offer.group}: {offer.name} = {offer.value}"
-        why = f"`{entry}` cannot be imported ({type(error).__name__}: {error})"
-        raise BrokenPackage(f"the installed package `{package}` is broken: {why}; repair it, or uninstall it") from error
+
+def broken(package: str, place: str, error: Exception) -> BrokenPackage:
+    """What is raised where a place in a package cannot be imported."""
+    from rosetta_jit.errors import BrokenPackage
+
+    why = f"`{place}` cannot be imported ({type(error).__name__}: {error})"
+    return BrokenPackage(f"the installed package `{package}` is broken: {why}; repair it, or uninstall it")
 
 
 def files_of_offered(group: str) -> tuple[str, ...]:

@@ -45,9 +45,23 @@ def imported(name: str) -> ModuleType:
 
 
 def object_at(place: str) -> Any:
-    """What a place `module:name` names; its module is imported when it is first asked for."""
+    """What a place `module:name` names; its module is imported when it is first asked for.
+
+    Raises
+    ------
+    BrokenPackage
+        The module is one of another package, and cannot be imported, or has no such name.
+    """
     module, _, name = place.partition(":")
-    return getattr(imported(module), name)
+    package = module.partition(".")[0]
+    try:
+        return getattr(imported(module), name)
+    except Exception as error:
+        if package == __name__.partition(".")[0]:
+            raise
+        from rosetta_jit.startup.entry_points import broken
+
+        raise broken(package, place, error) from error
 
 
 def _call_all_old() -> None:

@@ -434,6 +434,15 @@ def test_a_broken_language_is_named(line, text, why, tmp_path, monkeypatch, caps
     assert not (tmp_path / "made").exists()
 
 
+@pytest.mark.usefixtures("offers_anew")
+def test_a_language_without_its_printer_is_named(tmp_path, monkeypatch, capsys):
+    offers(tmp_path, "toy = toy_language:TOY", monkeypatch, TOY.replace("toy_language:files", "toy_printer:files"))
+    monkeypatch.delitem(sys.modules, "toy_language", raising=False)
+    assert main(["generate", "sensor_msgs/JointState", "--encoding", "ros1", "--language", "toy", "-o", str(tmp_path / "made")]) == 1
+    said = "`toy_printer:files` cannot be imported (ModuleNotFoundError: No module named 'toy_printer')"
+    assert capsys.readouterr().err == f"the installed package `toy_printer` is broken: {said}; repair it, or uninstall it\n"
+
+
 def test_capacities_are_what_the_schema_bounds():
     text = generated(TORSO, "c", ("decode",), "torso")["torso.h"]
     assert "#define TORSO_ANGLES_ROWS 3 " in text
