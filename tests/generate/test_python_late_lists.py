@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import inspect
 import pickle
 import random
 import threading
@@ -178,6 +179,32 @@ def test_its_class_can_be_changed(unit):
     found.__class__ = other
     assert type(found) is other
     assert found.l1 == []
+
+
+def test_an_object_that_is_made_without_lists_lacks_them(unit):
+    made = unit.M(first=7, text="ä")
+    assert (made.first, made.text, made.said, made.unknown_fields, lacking(unit, made)) == (7, "ä", None, b"", "012")
+    made.which, made.first = ("word", "a"), 8
+    assert lacking(unit, made) == "012"
+    assert unit.encode(unit.M(first=7)) == encoded({"first": 7})
+    made.l1.append("a")
+    assert (made.l1, unit.M().l1, lacking(unit, made)) == (["a"], [], "12")
+    assert unit.encode(unit.M(first=7)) == unit.encode(unit.M(7)) == unit.encode(unit.M(first=7, l1=[]))
+
+
+def test_an_object_that_is_made_with_a_list_has_all(unit):
+    for made in (unit.M(l1=["a"]), unit.M(7, ["a"]), unit.M(first=7, m31={})):
+        assert has_lists(unit, made)
+        assert made.l2 == []
+
+
+def test_a_class_is_called_as_one_of_few_lists(unit):
+    assert [*inspect.signature(unit.M).parameters] == [each.name for each in dataclasses.fields(unit.M)]
+    with pytest.raises(TypeError, match="unexpected keyword argument 'l0'"):
+        unit.M(l0=1)
+    other = type("Other", (unit.M,), {"__slots__": ()})
+    assert type(other(first=7)) is other
+    assert unit.encode(other(first=7)) == unit.encode(unit.M(first=7))
 
 
 def test_few_lists_are_made_at_once():

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import dataclasses as _dataclasses
+import functools as _functools
 import threading as _threading
 from typing import Any
 
@@ -12,12 +13,40 @@ _set_class = object.__dict__["__class__"].__set__
 _lists_lock = _threading.RLock()
 _lacking: dict[Any, int] = {}
 """By the classes of objects that lack groups of lists: which these are, a bit each."""
-_without_lists: dict[Any, Any] = {}
-"""By usual classes: those of their objects that lack groups of lists."""
+
+
+class _LateList:
+    """A list or map that an object lacks: its group is made when somebody asks for it, or sets it.
+
+    ``classes`` are those of such objects, ``slot`` is where the list will be, ``group`` a bit, ``made`` what sets each list of the group
+    with what makes it.
+    """
+
+    def __init__(self, classes: Any, slot: Any, group: int, made: Any) -> None:
+        self.classes, self.slot, self.group, self.made = classes, slot, group, made
+
+    def come(self, message: Any) -> Any:
+        """An object with the group; where two threads ask at once, one of them makes the lists."""
+        with _lists_lock:
+            lacks = _lacking.get(type(message), 0)
+            if lacks & self.group:
+                for put, make in self.made:
+                    put(message, make())
+                _set_class(message, self.classes[lacks - self.group])
+        return message
+
+    def __get__(self, message: Any, _: Any = None) -> Any:
+        return self.slot if message is None else self.slot.__get__(self.come(message))
+
+    def __set__(self, message: Any, value: Any) -> None:
+        self.slot.__set__(self.come(message), value)
+
+    def __delete__(self, message: Any) -> None:
+        self.slot.__delete__(self.come(message))
 
 
 class _WithoutLists:
-    """What an object is while it lacks groups of lists and maps: it gets a group when somebody asks for one of its lists, or sets it."""
+    """What an object is while it lacks groups of lists and maps."""
 
     __slots__ = ()
 
@@ -29,59 +58,55 @@ class _WithoutLists:
     def __class__(self, other: Any) -> None:
         _set_class(_with_lists(self), other)
 
-    def __getattr__(self, name: str) -> Any:
-        return object.__getattribute__(_with_list(self, name), name)
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        object.__setattr__(_with_list(self, name), name, value)
-
-    def __delattr__(self, name: str) -> None:
-        object.__delattr__(_with_list(self, name), name)
-
     def __reduce_ex__(self, protocol: Any) -> Any:
         return _with_lists(self).__reduce_ex__(protocol)
 
 
 class _ByLists(dict[int, Any]):
-    """The classes of objects of a ``usual`` class by the groups of lists, of a ``size`` each, that they lack; all have the same names.
-
-    ``groups`` are these, by the names of their lists: a bit, and what sets each list with what makes it.
-    """
+    """The classes of objects of a ``usual`` class by the groups of lists, of a ``size`` each, that they lack; all have the same names."""
 
     def __init__(self, usual: Any, size: int) -> None:
         super().__init__({0: usual})
-        made = [each for each in _dataclasses.fields(usual) if each.default_factory is not _dataclasses.MISSING]
-        self.usual, self.groups = usual, dict[str, Any]()
-        for number in range(-(-len(made) // size)):
-            group = made[number * size : (number + 1) * size]
-            what = 1 << number, [(usual.__dict__[each.name].__set__, each.default_factory) for each in group]
-            self.groups |= dict.fromkeys((each.name for each in group), what)
-        _without_lists[usual] = self
+        fields = _dataclasses.fields(usual)
+        late = [each for each in fields if each.default_factory is not _dataclasses.MISSING]
+        self.usual, self.lists = usual, dict[str, _LateList]()
+        for number in range(-(-len(late) // size)):
+            group = [(each.name, usual.__dict__[each.name], each.default_factory) for each in late[number * size : (number + 1) * size]]
+            made = [(slot.__set__, make) for _, slot, make in group]
+            self.lists |= {name: _LateList(self, slot, 1 << number, made) for name, slot, _ in group}
+        besides = [(each.name, usual.__dict__[each.name].__set__, each.default) for each in fields if each.name not in self.lists]
+        usual.__init__ = _made_late(self, besides)
 
     def __missing__(self, lacks: int) -> Any:
         usual = self.usual
         names = {"__module__": usual.__module__, "__qualname__": usual.__qualname__, "__doc__": usual.__doc__}
-        late: Any = type(usual.__name__, (_WithoutLists, usual), {"__slots__": (), **names})
+        lists = {name: each for name, each in self.lists.items() if each.group & lacks}
+        late: Any = type(usual.__name__, (_WithoutLists, usual), {"__slots__": (), **lists, **names})
         late.__slots__ = usual.__slots__
         _lacking[late] = lacks
         return self.setdefault(lacks, late)
 
 
-def _with_list(message: Any, name: str) -> Any:
-    """An object with the group of a list, if the name is one's; where two threads ask at once, one of them makes these lists."""
-    with _lists_lock:
-        if lacks := _lacking.get(type(message), 0):
-            classes = _without_lists[type(message).__mro__[2]]
-            group, lists = classes.groups.get(name, (0, ()))
-            if lacks & group:
-                for put, make in lists:
-                    put(message, make())
-                _set_class(message, classes[lacks - group])
-    return message
+def _made_late(classes: _ByLists, besides: Any) -> Any:
+    """The `__init__` of a class: an object that gets none of its lists lacks them all; ``besides`` are its other fields."""
+    usual, whole, names = classes.usual, classes.usual.__init__, {name for name, *_ in besides}
+    every = max(each.group for each in classes.lists.values()) * 2 - 1
+
+    @_functools.wraps(whole)
+    def init(message: Any, *values: Any, **given: Any) -> None:
+        if values or type(message) is not usual or not names.issuperset(given):
+            whole(message, *values, **given)
+            return
+        for name, put, default in besides:
+            put(message, given.get(name, default))
+        _set_class(message, classes[every])
+
+    return init
 
 
 def _with_lists(message: Any) -> Any:
     """An object with all of its lists."""
-    for name in _without_lists[message.__class__].groups:
-        _with_list(message, name)
+    for each in type(message).__dict__.values():
+        if isinstance(each, _LateList):
+            each.come(message)
     return message
