@@ -5,29 +5,26 @@ from __future__ import annotations
 from typing import assert_never
 
 from rosetta_jit.generate.descents import Visit
-from rosetta_jit.generate.origins import origin_of
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.python.passes.bools import Bools, bools_read
-from rosetta_jit.generate.python.passes.groups import bounded, grouped, is_not_negative, scalar_of, turned, without_sign
+from rosetta_jit.generate.python.passes.groups import bounded, grouped, scalar_of, turned, without_sign
 from rosetta_jit.generate.python.passes.mentions import assigned
-from rosetta_jit.generate.python.printing.calls import host_call, pass_on, tuple_of
-from rosetta_jit.generate.python.printing.expressions import expression, is_small, location, slice_of
+from rosetta_jit.generate.python.printing.calls import host_call, print_call
+from rosetta_jit.generate.python.printing.effects import list_read, origin_comment, print_effect, target_of
+from rosetta_jit.generate.python.printing.expressions import expression, is_small, location
 from rosetta_jit.generate.python.printing.failures import fail, fail_if, lacks
 from rosetta_jit.generate.python.printing.printed import Function
-from rosetta_jit.generate.python.printing.reading import numbers_read, rows_read, takes_text
+from rosetta_jit.generate.python.printing.reading import rows_read, takes_text
 from rosetta_jit.generate.python.printing.reserving import reserve, take
 from rosetta_jit.generate.python.printing.rows_at_once import rows_at_once
-from rosetta_jit.generate.python.printing.scope import CODES, Scope
+from rosetta_jit.generate.python.printing.scope import CODES
 from rosetta_jit.generate.python.printing.switching import print_switch
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
-from rosetta_jit.kernel.terms import mul, type_of
-from rosetta_jit.model.layout import Span
+from rosetta_jit.kernel.terms import mul
 
 COPY = "<copy>"
 """Stands for what functions of rows get besides, where some arrays are views of the message."""
-OF_SEVERAL_BYTES = {**dict.fromkeys(("read_varint", "read_element", "read_packed"), "_several_bytes"), "read_size": "_long_length"}
-"""Routines for integers of protobuf that often have several bytes, with the function that reads those that end by one call."""
 
 
 def print_block(function: Function, block: nodes.Block) -> None:
@@ -58,7 +55,7 @@ def _together(function: Function, group: list[nodes.Stmt]) -> None:
             case nodes.Let(name, _):
                 targets.append(scope.locals.identifier(name) if name in function.read else "_")
             case nodes.SetField(place, value):
-                targets.append(_target(function, place, value))
+                targets.append(target_of(function, place, value))
             case nodes.Store(_, value, _):
                 targets.append(function.text(value))
             case _:
@@ -88,14 +85,14 @@ def print_statement(function: Function, stmt: nodes.Stmt) -> None:
             function.scope.note(name, is_small=isinstance(stmt, nodes.Let) and is_small(value, function.scope.small))
             if name in function.read:
                 text = function.text(value)
-                function.line(f"{function.scope.locals.identifier(name)} = {text}{_origin(function, stmt)}")
+                function.line(f"{function.scope.locals.identifier(name)} = {text}{origin_comment(function, stmt)}")
                 function.scope.forget({name} if isinstance(stmt, nodes.Assign) else set())
                 if isinstance(stmt, nodes.Let) and isinstance(value, nodes.Binary) and value.op == "add":
                     function.scope.sums[value] = function.scope.locals.identifier(name)
         case nodes.SetField(place) if place in function.unasked:
             pass
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
-            _effect(function, stmt)
+            print_effect(function, stmt)
         case nodes.Reserve(lane, count):
             reserve(function, lane, count)
         case nodes.Advance(lane, count):
@@ -132,84 +129,12 @@ def _return(function: Function, stmt: nodes.Return) -> None:
     function.line(f"return {result}")
 
 
-def _origin(function: Function, stmt: nodes.Stmt) -> str:
-    line = origin_of(stmt, function.origins) if function.origins else None
-    return "" if line is None else f"  # {ascii(line)[1:-1]}"
-
-
-def _effect(function: Function, stmt: nodes.Effect) -> None:
-    scope, origin = function.scope, _origin(function, stmt)
-    match stmt:
-        case nodes.Store(at, value, order):
-            type_, where, text = type_of(value), function.text(at), function.text(value)
-            if type_ in ("u8", "bool"):
-                function.line(f"data[{where}] = {text}{origin}")
-            else:
-                function.line(
-                    f"{scope.struct('<' if nodes.WIDTH[type_] == 1 else order, CODES[type_], 'store')}(data, {where}, {text}){origin}"
-                )
-        case nodes.SetField(nodes.Place(lane), _) if lane in scope.direct.gathered:
-            if lane not in scope.direct.listed:
-                function.line(f"{scope.lanes.rows(lane)}.append({slice_of(scope, *scope.direct.gathered[lane])}){origin}")
-        case nodes.SetField(nodes.Place(lane, _, offset), _) if (lane, offset) in scope.direct.pieces:
-            function.line(f"{_piece(scope, lane, offset)}{origin}")
-        case nodes.SetField(nodes.Place(lane) as place, _) if place in scope.direct.rows.get(lane, ()):
-            number = [*scope.direct.rows[lane]].index(place)
-            function.line(f"{scope.element(lane, number)} = {_row_of(function, lane, *scope.direct.rows[lane][place])}{origin}")
-        case nodes.SetField(place, value):
-            target = _target(function, place, value)
-            text = function.text(value)
-            if type_of(value) == "f32" and text.startswith("_single(") and target.endswith("]"):
-                text = bare(text.removeprefix("_single"))  # a view rounds by itself
-            function.line(f"{target} = {text}{origin}")
-        case nodes.Copy(nodes.Place(lane), nodes.Wire(at), size) if lane in scope.direct.whole:
-            function.line(f"{scope.lanes.rows(lane)} = {_list(function, lane, at, size, '<')}{origin}")
-        case nodes.Copy(target, source, size):
-            (to, first), (of, begin), length = location(scope, target), location(scope, source), expression(scope, size)
-            function.line(f"{to}[{first} : {first} + {length}] = {of}[{begin} : {begin} + {length}]{origin}")
-        case nodes.Fill(nodes.Place(0, _, offset), nodes.Const(_, size), _) if scope.flat:
-            function.line(f"<row {offset} {int(size)}>")
-        case nodes.Fill(target, size, byte):
-            (to, first), length = location(scope, target), expression(scope, size)
-            filling = f"bytes({bare(length)})" if byte == 0 else f"bytes([{byte}]) * {length}"
-            function.line(f"{to}[{first} : {first} + {length}] = {filling}{origin}")
-        case _:
-            assert_never(stmt)
-
-
-def _target(function: Function, place: nodes.Place, value: nodes.Expr) -> str:
-    """What a field is assigned to."""
-    return function.scope.place(place, type_of(value), lambda: expression(function.scope, place.row))
-
-
-def _piece(scope: Scope, lane: int, offset: int) -> str:
-    """The line that takes bytes out of the message: for a list of them, or for a field."""
-    piece = slice_of(scope, *scope.direct.pieces[lane, offset])
-    return f"{scope.lanes.rows(lane)}.append({piece})" if lane in scope.direct.listed else f"{scope.piece(lane, offset)} = {piece}"
-
-
 def _taken(function: Function, taken: str, failure: nodes.Failure) -> None:
     """A text, which is not valid where it cannot be decoded."""
     with function.writer.indented("try:"):
         function.line(taken)
     with function.writer.indented("except UnicodeDecodeError:"):
         fail(function, failure)
-
-
-def _list(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr, order: str) -> str:
-    """An array that lies in the message."""
-    scope, objects = function.scope, function.objects
-    assert objects.layout is not None
-    return numbers_read(scope, lane, objects.layout.lanes[lane].element, lambda: objects.row(scope, lane), at, size, order)
-
-
-def _row_of(function: Function, lane: int, at: nodes.Expr, size: nodes.Expr) -> str:
-    """A row, of an array of arrays, that lies in the message."""
-    objects = function.objects
-    assert objects.layout is not None
-    inner = objects.layout.lanes[lane].element
-    assert isinstance(inner, Span)
-    return slice_of(function.scope, at, size) if lane in objects.blobs else _list(function, inner.lane, at, size, "<")
 
 
 def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes.Switch) -> None:
@@ -289,7 +214,7 @@ def _bools(function: Function, variable: str, count: nodes.Expr, bools: Bools) -
     with function.writer.indented(f"if {number} < {length}:"):
         print_block(function, bools.before) if bools.before else None
         fail(function, bools.check.failure)
-    function.line(f"{scope.lanes.rows(bools.first.lane)} = {_list(function, bools.first.lane, bools.base, count, '<')}")
+    function.line(f"{scope.lanes.rows(bools.first.lane)} = {list_read(function, bools.first.lane, bools.base, count, '<')}")
 
 
 def _turn(function: Function, count: nodes.Expr, found: tuple[nodes.Place, nodes.Expr, str], *, decodes: bool) -> None:
@@ -297,7 +222,7 @@ def _turn(function: Function, count: nodes.Expr, found: tuple[nodes.Place, nodes
     place, base, type_ = found
     scope, size = function.scope, f"{expression(function.scope, count)} * {nodes.WIDTH[type_]}"
     if place.lane in scope.direct.whole:
-        function.line(f"{scope.lanes.rows(place.lane)} = {_list(function, place.lane, base, mul(count, nodes.WIDTH[type_]), '>')}")
+        function.line(f"{scope.lanes.rows(place.lane)} = {list_read(function, place.lane, base, mul(count, nodes.WIDTH[type_]), '>')}")
         return
     (lane, first), begin = location(scope, place), expression(scope, base)
     rows, part = f"{lane}[{first} : {first} + {size}]", f"data[{bare(begin)} : {begin} + {size}]"
@@ -307,32 +232,11 @@ def _turn(function: Function, count: nodes.Expr, found: tuple[nodes.Place, nodes
 
 
 def _call(function: Function, call: nodes.Call) -> None:
-    """A routine gets the numbers of the sites at which the caller fails where it does, and the indices there."""
-    if (visit := function.scope.direct.visits.get(call.routine)) is not None:
+    visit = function.scope.direct.visits.get(call.routine)
+    if visit is None:
+        print_call(function, call)
+    else:
         _visit(function, call, visit)
-        return
-    scope, routine = function.scope, function.routines[call.routine]
-    pass_on(function.scope, routine)
-    results = [scope.locals.identifier(result.name) for result in call.results]
-    called = next(each for each in function.kernel.routines if each.name == call.routine)
-    for result, own in zip(call.results, called.results, strict=True):
-        limits = (each.right for each in called.ensures if isinstance(each, nodes.Compare) and (each.op, each.left) == ("le", own))
-        scope.note(result.name, is_small=own.type == "u64" and any(is_small(limit, ()) for limit in limits))
-    sites = [f"sites[{each - 1}]" if function.is_routine else str(each) for each in call.sites]
-    indices = "indices" if function.is_routine else tuple_of([function.text(each) for each in call.indices])
-    arguments = ", ".join(["data", "end", tuple_of(sites), indices, *routine.needs, *(function.text(each) for each in call.arguments)])
-    bound = f"{', '.join(results)}{',' if len(results) == 1 else ''} = " if results else ""
-    if routine.is_mostly_a_byte:
-        at, (value, after) = expression(scope, call.arguments[0]), results
-        least = "" if is_not_negative(call.arguments[0], function.positive) else "0 <= "
-        function.line(f"{value} = data[{bare(at)}]" + (f" if {least}{at} < end else 128" if routine.may_lack else ""))
-        function.line(f"{after} = {at} + 1")
-        function.line(f"if {value} >= 128:")
-        if call.routine in OF_SEVERAL_BYTES:
-            function.line(f"    {value}, {after} = {OF_SEVERAL_BYTES[call.routine]}(data, {bare(at)})")
-            function.line(f"if not {after}:")
-        bound = f"    {bound}"
-    function.line(f"{bound}{routine.name}({arguments})")
 
 
 def _visit(function: Function, call: nodes.Call, visit: Visit) -> None:
