@@ -47,6 +47,32 @@ def test_bools_are_read_and_written_together(encoding, arrays):
         assert (seen.dtype, seen.tolist(), seen.flags.writeable, own.flags.writeable) == (np.bool_, own.tolist(), False, True)
 
 
+def _side_by_side(encoding: str) -> str | dict[str, str]:
+    """A message with bools before a number, behind it, and in a list of structs."""
+    names = [f"{place}{number}" for place in "ab" for number in range(9)]
+    if encoding == "lcm":
+        first, last = ("".join(f"boolean {name}; " for name in each) for each in (names[:9], names[9:]))
+        both = f"{first} int16_t number; {last}"
+        return {"t.lcm": f"package t; struct T {{ {both} int32_t n; Row rows[n]; }} struct Row {{ {both} }}"}
+    first, last = ("".join(f"bool {name}\n" for name in each) for each in (names[:9], names[9:]))
+    separator = f"\n{'=' * 80}\nMSG: t/Row\n"
+    return f"{first}int16 number\n{last}Row[] rows{separator}{first}int16 number\n{last}"
+
+
+@pytest.mark.parametrize("encoding", ["ros1", "cdr", "lcm"])
+def test_bools_side_by_side_are_read_by_one_call(encoding):
+    type_ = {"ros1": "t/T", "cdr": "t/msg/T", "lcm": "t.T"}[encoding]
+    given = {"encoding": encoding, "schema": _side_by_side(encoding)}
+    request, programs = type_request("decode", type_, given), (rj.Decoder.of(type_, **given), rj.Encoder.of(type_, **given))
+    assert "a8 = _load_9T(data, " in source_of(request, BOTH)
+    flags = {f"{place}{number}": number % 2 == (place == "a") for place in "ab" for number in range(9)}
+    row = {**flags, "number": 258}
+    values = ({**row, "rows": [row] * count, **({"n": count} if encoding == "lcm" else {})} for count in (0, 2))
+    good = [bytes(programs[1](programs[1].holder_type.from_dict(each))) for each in values]
+    bad = [good[-1][:at] + bytes([byte]) + good[-1][at + 1 :] for at in range(len(good[-1])) for byte in (2, 255)]
+    answers_as_the_library(module(request), programs, [*harmed(good, 12, encoding), *bad])
+
+
 def test_few_numbers_of_numpy_are_pythons_where_they_are_packed():
     """Together with the numbers around them; what is no number of their type is refused, times too."""
     given = {

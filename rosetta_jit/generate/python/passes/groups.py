@@ -54,18 +54,18 @@ def continues(group: list[nodes.Stmt], stmt: nodes.Stmt) -> bool:
     if one is None or other is None or isinstance(before, nodes.Store) != isinstance(stmt, nodes.Store):
         return False
     orders = {order for type_, _, order in (*filter(None, map(scalar_of, group)), other) if nodes.WIDTH[type_] > 1}
-    (base, offset), (base_2, offset_2) = _based(one[1]), _based(other[1])
+    (base, offset), (base_2, offset_2) = based(one[1]), based(other[1])
     follows = base == base_2 and offset_2 == offset + nodes.WIDTH[one[0]]
     return len(orders) < 2 and follows and not any(isinstance(each, nodes.Let) and _reads(stmt, each.name) for each in group)
 
 
-def _based(at: nodes.Expr) -> tuple[nodes.Expr | None, int]:
+def based(at: nodes.Expr) -> tuple[nodes.Expr | None, int]:
     """A place as something and a constant."""
     match at:
         case nodes.Const(_, value):
             return None, int(value)
         case nodes.Binary("add", left, nodes.Const(_, value)):
-            base, offset = _based(left)
+            base, offset = based(left)
             return base, offset + int(value)
         case _:
             return at, 0
@@ -73,7 +73,7 @@ def _based(at: nodes.Expr) -> tuple[nodes.Expr | None, int]:
 
 def _reads(stmt: nodes.Stmt, name: str) -> bool:
     found = scalar_of(stmt)
-    base = _based(found[1])[0] if found is not None else None
+    base = based(found[1])[0] if found is not None else None
     return isinstance(base, nodes.Local) and base.name == name
 
 

@@ -6,7 +6,7 @@ from typing import assert_never
 
 from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.python.passes.bools import Bools, bools_read
+from rosetta_jit.generate.python.passes.bools import Bools, Flags, bools_read, with_flags
 from rosetta_jit.generate.python.passes.groups import bounded, grouped, scalar_of, turned, without_sign
 from rosetta_jit.generate.python.passes.mentions import assigned
 from rosetta_jit.generate.python.printing.calls import host_call, print_call
@@ -33,15 +33,23 @@ def print_block(function: Function, block: nodes.Block) -> None:
     for number, late in enumerate(function.scope.direct.fields):
         if id(block) in late.cases:
             function.line(f"<late {number}>")
+    for each in with_flags(block):
+        if isinstance(each, Flags):
+            _flags(function, each)
+        else:
+            _groups(function, each)
+    if len(function.writer.lines) == before:
+        function.line("pass")
+    function.scope.sums, function.scope.allowed = sums, allowed
+    function.scope.forget(assigned(block))
+
+
+def _groups(function: Function, block: nodes.Block) -> None:
     for group in grouped(block):
         if len(group) == 1:
             print_statement(function, group[0])
         else:
             _together(function, group)
-    if len(function.writer.lines) == before:
-        function.line("pass")
-    function.scope.sums, function.scope.allowed = sums, allowed
-    function.scope.forget(assigned(block))
 
 
 def _together(function: Function, group: list[nodes.Stmt]) -> None:
@@ -204,12 +212,26 @@ def _rows(function: Function, loop: nodes.For, count: str, rows: str, least: int
         _loop(function, loop)
 
 
+def _flags(function: Function, flags: Flags) -> None:
+    """Bools that lie side by side, by one call, behind the checks of all where one of them fails."""
+    scope, count = function.scope, len(flags.fields)
+    with function.writer.indented(f'if {_part(expression(scope, flags.at), str(count))}.lstrip(b"\\0\\1"):'):
+        for check in flags.checks:
+            print_statement(function, check)
+    targets = ", ".join(target_of(function, each.place, each.value) for each in flags.fields)
+    function.line(f"{targets} = {scope.struct('<', '?' * count, 'load')}(data, {function.text(flags.at)})")
+
+
+def _part(begin: str, length: str) -> str:
+    """A part of the message, of a length."""
+    return f"data[{bare(begin)} : {begin} + {length}]" if begin != "0" else f"data[:{bare(length)}]"
+
+
 def _bools(function: Function, variable: str, count: nodes.Expr, bools: Bools) -> None:
     """An array of bools, which begins with as many bytes that are 0 or 1 as there are until another one comes."""
     assert bools.check is not None
     scope, number, length = function.scope, function.scope.locals.identifier(variable), expression(function.scope, count)
-    begin = expression(scope, bools.base)
-    part = f"data[{bare(begin)} : {begin} + {length}]" if begin != "0" else f"data[:{bare(length)}]"
+    part = _part(expression(scope, bools.base), length)
     function.line(f'{number} = {length} - len({part}.lstrip(b"\\0\\1"))')
     with function.writer.indented(f"if {number} < {length}:"):
         print_block(function, bools.before) if bools.before else None
