@@ -73,6 +73,17 @@ def test_bools_side_by_side_are_read_by_one_call(encoding):
     answers_as_the_library(module(request), programs, [*harmed(good, 12, encoding), *bad])
 
 
+@pytest.mark.parametrize("arrays", ["", "numpy"])
+@pytest.mark.parametrize(("type_", "value"), [("boolean", True), ("double", 0.5), ("int8_t", -1)])
+def test_structs_of_one_number_are_structs(type_, value, arrays):
+    given = {"encoding": "lcm", "schema": {"t.lcm": f"package t; struct T {{ int32_t n; Row rows[n]; }} struct Row {{ {type_} one; }}"}}
+    programs = rj.Decoder.of("t.T", **given), rj.Encoder.of("t.T", **given)
+    good = bytes(programs[1](programs[1].holder_type.from_dict({"n": 2, "rows": [{"one": value}, {}]})))
+    unit = module(type_request("decode", "t.T", given), BOTH, Wishes(numpy=bool(arrays)))
+    assert unit.encode(unit.T(2, [unit.Row(value), unit.Row()])) == good
+    answers_as_the_library(unit, programs, harmed([good], 24, type_))
+
+
 def test_few_numbers_of_numpy_are_pythons_where_they_are_packed():
     """Together with the numbers around them; what is no number of their type is refused, times too."""
     given = {

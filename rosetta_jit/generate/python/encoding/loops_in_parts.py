@@ -35,11 +35,7 @@ class Loops(Messages):
         raise NotImplementedError
 
     def _for(self, loop: nodes.For) -> None:
-        if (found := turned(loop)) is not None and isinstance(loop.body[-1], nodes.Store):
-            self._turned(loop, *found)
-            return
-        if (bools := bools_written(loop)) is not None and self._is_count_of(bools.first.lane, loop.count):
-            self._bools(loop, bools)
+        if self._at_once(loop):
             return
         width = known_width(loop.body)
         self.flush()
@@ -184,6 +180,21 @@ class Loops(Messages):
             self.binder.bind_entry(sequence, row, names)
         else:
             self.binder.bind(sequence.lane, row, names[0], sequence.element, sequence.slot)
+
+    def _at_once(self, loop: nodes.For) -> bool:
+        """Write the numbers of an array by one call, if a loop does nothing else."""
+        found, bools = turned(loop), bools_written(loop)
+        if found is not None and isinstance(loop.body[-1], nodes.Store) and self._has_numbers(found[0].lane):
+            self._turned(loop, *found)
+            return True
+        if bools is not None and self._has_numbers(bools.first.lane) and self._is_count_of(bools.first.lane, loop.count):
+            self._bools(loop, bools)
+            return True
+        return False
+
+    def _has_numbers(self, lane: int) -> bool:
+        """Whether the elements of an array are numbers, and no structs of one."""
+        return isinstance(self.unit.layout.lanes[lane].element, Number)
 
     def _turned(self, loop: nodes.For, place: nodes.Place, base: nodes.Expr, type_: str) -> None:
         sequence = self.scope.sequences.get(place.lane)

@@ -150,7 +150,7 @@ def _nested(function: Function, stmt: nodes.For | nodes.While | nodes.If | nodes
     if isinstance(stmt, nodes.For | nodes.While):
         scope.forget(assigned(stmt.body))
     match stmt:
-        case nodes.For(_, count, _) if (found := turned(stmt)) is not None:
+        case nodes.For(variable, count, _) if (found := turned(stmt)) is not None and variable not in scope.direct.loops:
             _turn(function, count, found, decodes=isinstance(stmt.body[-1], nodes.SetField))
         case nodes.For(variable, count, _) if (bools := bools_read(stmt)) is not None and bools.first.lane in scope.direct.whole:
             _bools(function, variable, count, bools)
