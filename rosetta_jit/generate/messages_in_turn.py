@@ -1,13 +1,13 @@
 """Encoders of messages of types that contain themselves, as functions that call each other in place of a work list (`work_lists`).
 
-let size = get i64 lane 3[(start + i)].96               let next = opened @ (at + 1)
+let size = get i64 lane 3[(start + i)].96               let next = opened @ (at + 1), 1
 let next = write_varint((at + 1), size)                 let behind = visit message 3[start + i] @ next
-set lane 3[(start + i)].56 = next                       let end = closed @ (at + 1), next, behind
+set lane 3[(start + i)].56 = next                       let end = closed @ (at + 1), next, behind, 1
 ...                                                     ...
 
 They measure a message where the one around it needs its size, and write it where that has a place for it: so both come upon all messages in
 the same order, and upon whatever else has a length, and the scratch lane has all lengths in that order. Who writes need not know them: a
-length has a byte then, and what it is of moves if it takes more.
+length has as many bytes then as others of its kind had, which a number says, and what it is of moves if it takes more or fewer.
 """
 
 from __future__ import annotations
@@ -49,6 +49,8 @@ DEEPEST = 1_000
 
 OPENED, CLOSED = "opened\0", "closed\0"
 """Calls of no routine: what has a length begins behind the bytes that are left for it, and ends, which may move what was written."""
+DEPTHS = 16
+"""Lengths of one field are of as many kinds, by how deep their messages lie within others; deeper ones are taken for those of others."""
 
 
 def visited_in_turn(kernel: Kernel, layout: Layout) -> Descents:
@@ -138,6 +140,7 @@ class _Opened:
 
     at: Expr
     begin: Local
+    kind: Expr
     failure: Failure
 
 
@@ -145,8 +148,8 @@ class _Opened:
 class _Written:
     """Puts visits in place of what says where rows begin, and leaves room for their sizes, and for other lengths, that are not known.
 
-    ``rows`` are the sizes of rows by their places, ``sizes`` all of which the value is not known, ``opened`` what has them and goes on,
-    ``ends`` where messages end that had them.
+    ``rows`` are the sizes of rows by their places, ``sizes`` the numbers of all whose value is not known, ``opened`` what has them and
+    goes on, ``ends`` where messages end that had them.
     """
 
     layout: Layout
@@ -154,7 +157,7 @@ class _Written:
     lengths: Local
     inside: Expr = index(1)
     rows: dict[tuple[int, Expr], str] = field(default_factory=dict[tuple[int, Expr], str])
-    sizes: set[str] = field(default_factory=set[str])
+    sizes: dict[str, int] = field(default_factory=dict[str, int])
     opened: dict[str, _Opened] = field(default_factory=dict[str, _Opened])
     ends: dict[str, Local] = field(default_factory=dict[str, Local])
 
@@ -169,14 +172,15 @@ class _Written:
     def _stmts(self, stmt: Stmt, moved: dict[Local, Expr]) -> Block:
         match stmt:
             case Let(name, Get(_, place)) if place.lane == len(self.layout.lanes) or is_hidden(place, self.layout):
-                self.sizes.add(name)
+                self.sizes.setdefault(name, len(self.sizes))
                 self.rows[place.lane, place.row] = name
                 return ()
             case Let(_, Local(_, name)) | Let(name) | Var(name) | Assign(name) if name == self.lengths.name:
                 return ()
             case Call(_, (at, Convert(_, Local(_, size))), (begin,), (site,)) if size in self.sizes:
-                self.opened[size] = _Opened(at, begin, Failure(site, at, stmt.indices))
-                return Call(OPENED, (at,), (begin,), ()), Expect(Compare("le", begin, END), self.opened[size].failure)
+                kind = add(self.inside, DEPTHS * self.sizes[size])
+                self.opened[size] = _Opened(at, begin, kind, Failure(site, at, stmt.indices))
+                return Call(OPENED, (at, kind), (begin,), ()), Expect(Compare("le", begin, END), self.opened[size].failure)
             case SetField(place, begin) if is_hidden(place, self.layout):
                 return self._message(place, begin)
             case Require(_, Local(_, size)) if size in self.ends:
@@ -215,7 +219,7 @@ class _Written:
 
     def _end(self, size: str, behind: Expr) -> tuple[Block, Local]:
         opened, end = self.opened.pop(size), Local("i64", f"end\0{size}")
-        closed = Call(CLOSED, (opened.at, opened.begin, behind), (end,), ())
+        closed = Call(CLOSED, (opened.at, opened.begin, behind, opened.kind), (end,), ())
         return (closed, Expect(Compare("ge", end, index(0)), opened.failure)), end
 
 

@@ -36,6 +36,7 @@ OWN_WORDS = frozenset(
         "given_row",
         "given_object",
         "given_lengths",
+        "given_longer",
         "given_place",
         "given_waits",
         "gathered",

@@ -162,6 +162,7 @@ int64_t tried(${name}_source *holder, const $row &given_row, ${name}_holder &mem
     const int64_t end = reach(capacity);
     struct failure failure$unset;
     holder->given_lengths.left = 1024;
+    holder->given_lengths.late = &memory.given_longer;
     const int64_t result = $run;
     memory.given_waits = holder->given_lengths.left < 0 ? MEASURED_FIRST : 0;
     return result;

@@ -78,7 +78,7 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
         unmeasured=Template(known["unmeasured"]).substitute(memory=memory) if has_lengths(unit) else "",
         later=Template(known["later"]).substitute(memory=memory) if has_lengths(unit) else "",
         soon=Template(known["soon"]).substitute(memory=memory) if has_lengths(unit) else "",
-        known="    holder->given_lengths = {holder->scratch[0].bytes, 0, 0};" if has_lengths(unit) else "",
+        known="    holder->given_lengths.known = holder->scratch[0].bytes;" if has_lengths(unit) else "",
         measure=measure,
     )
 

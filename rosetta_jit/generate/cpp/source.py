@@ -190,6 +190,7 @@ def _holder(
     lines += ["    int64_t most = 0; /* rows that a message may ask for */", "    int64_t now = 0;", "    int64_t number = 0;"]
     if has_lengths(unit):
         lines += ["    std::vector<unsigned char> given_place; /* where a message may be written first */"]
+        lines += ["    rosetta_jit::detail::longer given_longer = {};"]
         lines += ["    int given_waits = 0; /* so many messages are measured before one is written otherwise */"]
     lines += ["    codec::state *state = nullptr;"] if unit.state else []
     return "\n".join([*lines, "};", ""])

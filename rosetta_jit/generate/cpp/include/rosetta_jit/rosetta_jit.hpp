@@ -770,16 +770,32 @@ inline std::int64_t write_varint_exactly(unsigned char *target, std::uint64_t nu
     return at - target;
 }
 
-/* The lengths in a message that is written. If it was measured first, they are known in the order in which they come; else each has a byte, and what it is
-   of moves where that takes more. As often as messages lie within each other, as often they may move: where no byte is left of those that may, as more than
-   measuring would take, writing ends. */
+/* How many bytes more than one lengths of each kind get: as many as the longest of late. Shorter ones change that once there were four. */
+struct longer {
+    unsigned char more[256] = {};
+    unsigned char shorter[256] = {};
+
+    void learn(std::int64_t kind, std::int64_t width, bool is_shorter) noexcept
+    {
+        unsigned char &count = shorter[kind & 255];
+        count = static_cast<unsigned char>(is_shorter ? (count + 1) % 4 : 0);
+        if (count == 0) {
+            more[kind & 255] = static_cast<unsigned char>(width - 1);
+        }
+    }
+};
+
+/* The lengths in a message that is written. If it was measured first, they are known in the order in which they come; else each has as many bytes as others
+   of its kind had, and what it is of moves where that takes more or fewer. As often as messages lie within each other, as often they may move: where no byte is
+   left of those that may, as more than measuring would take, writing ends. */
 struct lengths {
     const unsigned char *known = nullptr;
     std::int64_t next = 0;
     std::int64_t left = 0;
+    longer *late = nullptr;
 
     /* Where something begins whose length is `at` a position. */
-    ROSETTA_JIT_INLINE std::int64_t opened(std::int64_t at) noexcept
+    ROSETTA_JIT_INLINE std::int64_t opened(std::int64_t at, std::int64_t kind) noexcept
     {
         if (ROSETTA_JIT_UNLIKELY(known != nullptr)) {
             std::int64_t size;
@@ -787,23 +803,33 @@ struct lengths {
             return at + varint_size(static_cast<std::uint64_t>(size));
         }
         left += 128;
-        return at + 1;
+        return at + 1 + late->more[kind & 255];
     }
 
     /* Where it ends; -1 where no byte is left. */
-    ROSETTA_JIT_INLINE std::int64_t closed(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t begin, std::int64_t behind) noexcept
+    ROSETTA_JIT_INLINE std::int64_t closed(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t begin, std::int64_t behind, std::int64_t kind) noexcept
     {
-        if (behind - begin < 128) {
-            bytes[at] = static_cast<unsigned char>(behind - begin);
+        const std::int64_t size = behind - begin;
+        if (size < 128 && begin - at == 1) {
+            bytes[at] = static_cast<unsigned char>(size);
             return behind;
         }
-        return closed_long(bytes, end, at, begin, behind);
+        if (size >= 128 && size < 1 << 14 && begin - at == 2) {
+            bytes[at] = static_cast<unsigned char>(size | 128);
+            bytes[at + 1] = static_cast<unsigned char>(size >> 7);
+            return behind;
+        }
+        return closed_long(bytes, end, at, begin, behind, kind);
     }
 
-    ROSETTA_JIT_APART std::int64_t closed_long(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t begin, std::int64_t behind) noexcept
+    ROSETTA_JIT_APART std::int64_t closed_long(unsigned char *bytes, std::int64_t end, std::int64_t at, std::int64_t begin, std::int64_t behind, std::int64_t kind) noexcept
     {
-        const std::int64_t size = behind - begin, by = at + varint_size(static_cast<std::uint64_t>(size)) - begin;
-        if (by > 0) {
+        const std::int64_t size = behind - begin, width = varint_size(static_cast<std::uint64_t>(size)), by = at + width - begin;
+        if (by != 0) {
+            if (known != nullptr) {
+                return -1;
+            }
+            late->learn(kind, width, by < 0);
             left -= size;
             if (by > end - behind || left < 0) {
                 return -1;
