@@ -54,6 +54,14 @@ def unit(request):
     return module(type_request("decode", "t.M", GIVEN), BOTH, request.param)
 
 
+@pytest.fixture(scope="module", params=[NO_WISHES, Wishes(numpy=True)], ids=["lists", "arrays"])
+def wide(request):
+    kinds = ("string", "bytes", "bool", "double", "sint32") * 8
+    lists = " ".join(f"repeated {kind} l{number} = {number};" for number, kind in enumerate(kinds, 1))
+    given = protobuf(f"message M {{ int32 first = 50; string text = 51; {lists} }}")
+    return module(type_request("decode", "t.M", given), BOTH, request.param)
+
+
 def encoded(values) -> bytes:
     encoder = rj.Encoder.of("t.M", **GIVEN)
     return bytes(encoder(encoder.holder_type.from_dict(values)))
@@ -68,8 +76,8 @@ def has_lists(unit, message) -> bool:
 
 
 def lacking(unit, message) -> str:
-    """Which of the groups of nine lists an object lacks."""
-    return "".join(str(group) for group in range(3) if unit._lacking.get(type(message), 0) >> group & 1)
+    """Which of its groups of some ten lists an object lacks."""
+    return "".join(str(group) for group in range(5) if unit._lacking.get(type(message), 0) >> group & 1)
 
 
 def test_messages_have_some_of_their_lists(unit):
@@ -181,30 +189,39 @@ def test_its_class_can_be_changed(unit):
     assert found.l1 == []
 
 
-def test_an_object_that_is_made_without_lists_lacks_them(unit):
-    made = unit.M(first=7, text="ä")
-    assert (made.first, made.text, made.said, made.unknown_fields, lacking(unit, made)) == (7, "ä", None, b"", "012")
-    made.which, made.first = ("word", "a"), 8
-    assert lacking(unit, made) == "012"
-    assert unit.encode(unit.M(first=7)) == encoded({"first": 7})
+def test_an_object_that_is_made_without_lists_lacks_them(wide):
+    made = wide.M(first=7, text="ä")
+    assert (made.first, made.text, made.unknown_fields, lacking(wide, made)) == (7, "ä", b"", "01234")
+    made.text, made.first = "a", 8
+    assert lacking(wide, made) == "01234"
+    assert wide.encode(wide.M(first=7)) == wide.encode(wide.M(7))
     made.l1.append("a")
-    assert (made.l1, unit.M().l1, lacking(unit, made)) == (["a"], [], "12")
-    assert unit.encode(unit.M(first=7)) == unit.encode(unit.M(7)) == unit.encode(unit.M(first=7, l1=[]))
+    assert (made.l1, wide.M().l1, lacking(wide, made)) == (["a"], [], "1234")
 
 
-def test_an_object_that_is_made_with_a_list_has_all(unit):
-    for made in (unit.M(l1=["a"]), unit.M(7, ["a"]), unit.M(first=7, m31={})):
-        assert has_lists(unit, made)
-        assert made.l2 == []
+def test_an_object_that_is_made_with_a_few_lists_lacks_the_others(wide):
+    made = wide.M(l1=["a"], text="ä", l40=[1])
+    assert (made.l1, made.text, [*made.l40], lacking(wide, made)) == (["a"], "ä", [1], "123")
+    assert wide.encode(made) == wide.encode(wide.M(0, "ä", l1=["a"], l40=[1]))
+    assert has_lists(wide, wide.M(l1=[], l11=[], l21=[], l31=[]))
+    assert has_lists(wide, wide.M(7))
 
 
-def test_a_class_is_called_as_one_of_few_lists(unit):
-    assert [*inspect.signature(unit.M).parameters] == [each.name for each in dataclasses.fields(unit.M)]
-    with pytest.raises(TypeError, match="unexpected keyword argument 'l0'"):
-        unit.M(l0=1)
-    other = type("Other", (unit.M,), {"__slots__": ()})
+def test_an_object_of_less_than_36_lists_is_made_with_them(unit):
+    assert has_lists(unit, unit.M(first=7))
+    assert unit.encode(unit.M(first=7)) == encoded({"first": 7})
+
+
+def test_a_class_is_called_as_one_of_few_lists(wide):
+    assert [*inspect.signature(wide.M).parameters] == [each.name for each in dataclasses.fields(wide.M)]
+    for given in ({"l0": 1}, {"first": 1, "l41": []}):
+        with pytest.raises(TypeError, match="unexpected keyword argument 'l"):
+            wide.M(**given)
+    with pytest.raises(TypeError, match="multiple values for argument 'first'"):
+        wide.M(1, first=7)
+    other = type("Other", (wide.M,), {"__slots__": ()})
     assert type(other(first=7)) is other
-    assert unit.encode(other(first=7)) == unit.encode(unit.M(first=7))
+    assert wide.encode(other(first=7)) == wide.encode(wide.M(first=7))
 
 
 def test_few_lists_are_made_at_once():

@@ -74,8 +74,9 @@ class _ByLists(dict[int, Any]):
             group = [(each.name, usual.__dict__[each.name], each.default_factory) for each in late[number * size : (number + 1) * size]]
             made = [(slot.__set__, make) for _, slot, make in group]
             self.lists |= {name: _LateList(self, slot, 1 << number, made) for name, slot, _ in group}
-        besides = [(each.name, usual.__dict__[each.name].__set__, each.default) for each in fields if each.name not in self.lists]
-        usual.__init__ = _made_late(self, besides)
+        if len(late) >= 36:  # of fewer lists, all are made in less time than a group of them later
+            besides = [(each.name, usual.__dict__[each.name].__set__, each.default) for each in fields if each.name not in self.lists]
+            usual.__init__ = _made_late(self, besides)
 
     def __missing__(self, lacks: int) -> Any:
         usual = self.usual
@@ -88,18 +89,21 @@ class _ByLists(dict[int, Any]):
 
 
 def _made_late(classes: _ByLists, besides: Any) -> Any:
-    """The `__init__` of a class: an object that gets none of its lists lacks them all; ``besides`` are its other fields."""
-    usual, whole, names = classes.usual, classes.usual.__init__, {name for name, *_ in besides}
-    every = max(each.group for each in classes.lists.values()) * 2 - 1
+    """The `__init__` of a class: an object that gets a few of its lists at most lacks the others; ``besides`` are its other fields."""
+    usual, whole, lists, names = classes.usual, classes.usual.__init__, classes.lists, {name for name, *_ in besides}
+    every = max(each.group for each in lists.values()) * 2 - 1
 
     @_functools.wraps(whole)
     def init(message: Any, *values: Any, **given: Any) -> None:
-        if values or type(message) is not usual or not names.issuperset(given):
+        few = given.keys() - names
+        if values or type(message) is not usual or len(few) > 3 or not few <= lists.keys():
             whole(message, *values, **given)
             return
         for name, put, default in besides:
             put(message, given.get(name, default))
         _set_class(message, classes[every])
+        for name in few:
+            lists[name].__set__(message, given[name])
 
     return init
 
