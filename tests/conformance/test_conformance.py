@@ -1,4 +1,4 @@
-"""protobuf's own conformance suite, binary to binary: none of its 1,302 cases may fail.
+"""protobuf's own conformance suite, binary to binary: none of its 1,302 cases may fail, nor of the 1,414 that protobuf 36 has.
 
 The runner is built from protobuf's sources; CONFORMANCE_TEST_RUNNER names it and CONFORMANCE_PROTOS the sources' `src`. What it has asked,
 and what it has accepted, is kept in the vectors, so that every machine can ask again.
@@ -74,7 +74,8 @@ def test_the_runner_itself(tmp_path, backend):
     environment = {**os.environ, "CONFORMANCE_BACKEND": backend}
     done = subprocess.run([RUNNER, program], env=environment, cwd=tmp_path, capture_output=True, text=True, check=False)
     summaries = re.findall(r"CONFORMANCE SUITE \w+: (\d+) successes, \d+ skipped, \d+ expected failures, (\d+) unexpected", done.stderr)
-    assert summaries[0] == (str(CASES), "0")
+    successes, unexpected = summaries[0]
+    assert (int(successes) >= CASES, unexpected) == (True, "0")
 
 
 @pytest.mark.parametrize("backend", ["llvm", "python", "interpreter"])
