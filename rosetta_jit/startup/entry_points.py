@@ -13,10 +13,10 @@ from functools import cache
 from importlib.machinery import PathFinder
 from typing import TYPE_CHECKING, Any
 
+from rosetta_jit.errors import BrokenPackage
+
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
-
-    from rosetta_jit.errors import BrokenPackage
 
 
 @cache
@@ -50,8 +50,6 @@ def _loaded(offer: EntryPoint) -> object:
 
 def broken(package: str, place: str, error: Exception) -> BrokenPackage:
     """What is raised where a place in a package cannot be imported."""
-    from rosetta_jit.errors import BrokenPackage
-
     why = f"`{place}` cannot be imported ({type(error).__name__}: {error})"
     return BrokenPackage(f"the installed package `{package}` is broken: {why}; repair it, or uninstall it")
 
