@@ -160,8 +160,12 @@ def test_a_peer_that_is_too_slow_costs_its_own_messages_and_is_counted(run):
         assert 10 <= live.counts.dropped["closed before it was sent"] <= 30 - too_slow
 
 
-def test_many_targets_that_take_nothing_are_closed_side_by_side(run):
-    targets = [free_port() for _ in range(8)]
+def test_many_targets_that_take_nothing_are_closed_side_by_side(run, request):
+    held = [socket.socket() for _ in range(8)]  # bound, so that no other process listens there
+    for each in held:
+        request.addfinalizer(each.close)
+        each.bind(("127.0.0.1", 0))
+    targets = [each.getsockname()[1] for each in held]
     bridge, _ = run("".join(route(free_port(), each, f'name = "{each}"') for each in targets))
     for each in bridge.live.values():
         loop().soon(each.deliver, b"\0", 1)  # where messages arrive, nobody waits for a target
