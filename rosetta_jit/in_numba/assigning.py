@@ -19,7 +19,7 @@ from numba.core import cgutils
 from numba.core.errors import NumbaTypeError
 from numba.extending import lower_setattr_generic
 
-from rosetta_jit.backends.llvm.frame import I64, constant
+from rosetta_jit.backends.llvm.values import I64, constant
 from rosetta_jit.in_numba.c_call import call_c
 from rosetta_jit.in_numba.reading import Reader, cell_type
 from rosetta_jit.in_numba.types import MessageType

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import POINTER
+from rosetta_jit.backends.llvm.values import POINTER
 
 if TYPE_CHECKING:
     from numba.core.base import BaseContext

@@ -11,7 +11,7 @@ from numba import njit, types
 from numba.core.errors import TypingError
 from numba.extending import intrinsic
 
-from rosetta_jit.backends.llvm.frame import I64, constant, state_word
+from rosetta_jit.backends.llvm.values import I64, constant, state_word
 from rosetta_jit.backends.numba.function import BYTES, WORDS, body
 from rosetta_jit.in_numba import assigning, boxing, maps, sequences
 from rosetta_jit.in_numba.c_call import call_c

@@ -21,7 +21,7 @@ from numba.core.errors import TypingError
 from numba.core.imputils import RefType, impl_ret_borrowed, impl_ret_new_ref, iternext_impl
 from numba.extending import intrinsic, lower_builtin, overload, overload_method, register_jitable
 
-from rosetta_jit.backends.llvm.frame import I64, constant
+from rosetta_jit.backends.llvm.values import I64, constant
 from rosetta_jit.in_numba.reading import Reader
 from rosetta_jit.in_numba.types import ROWS, MapIteratorType, MapType, Shown
 from rosetta_jit.runtime.holder.coerce import UTF_16

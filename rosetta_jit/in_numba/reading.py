@@ -18,7 +18,7 @@ from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, overload_method
 from numba.np.arrayobj import populate_array
 
-from rosetta_jit.backends.llvm.frame import I8, I64, LLVM_TYPES, POINTER, constant, state_word
+from rosetta_jit.backends.llvm.values import I8, I64, LLVM_TYPES, POINTER, constant, state_word
 from rosetta_jit.errors import InvalidHolder
 from rosetta_jit.in_numba.types import NUMBERS, MapType, MessageType, SequenceType, type_of
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, VALID, lane_word

@@ -11,7 +11,7 @@ from numba.core import cgutils
 from numba.core.imputils import RefType, impl_ret_new_ref, iternext_impl
 from numba.extending import intrinsic, lower_builtin, overload
 
-from rosetta_jit.backends.llvm.frame import constant
+from rosetta_jit.backends.llvm.values import constant
 from rosetta_jit.in_numba.reading import Reader
 from rosetta_jit.in_numba.types import IteratorType, SequenceType
 

@@ -7,8 +7,8 @@ import re
 import pytest
 from llvmlite import binding, ir
 
-from rosetta_jit.backends.llvm.frame import COLD, F32, F64, I1, I8, I32, I64, POINTER, forgotten
 from rosetta_jit.backends.llvm.lines import Lines
+from rosetta_jit.backends.llvm.values import COLD, F32, F64, I1, I8, I32, I64, POINTER, forgotten
 
 SIGNS = ("==", "!=", "<", "<=", ">", ">=")
 PAIR = ir.LiteralStructType([I64, I1])

@@ -8,9 +8,9 @@ from llvmlite import binding, ir
 import rosetta_jit as rj
 from rosetta_jit.backends.entry import link, program
 from rosetta_jit.backends.llvm import printing
-from rosetta_jit.backends.llvm.frame import I64
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.tables import table
+from rosetta_jit.backends.llvm.values import I64
 from rosetta_jit.runtime.code.prelink import is_prelinking
 from tests.backends.test_series import tree, within_itself
 

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, cast
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
-from rosetta_jit.backends.llvm.frame import F32, F64, I32, I64, Frame, Variable, forgotten
+from rosetta_jit.backends.llvm.frame import Frame, Variable
+from rosetta_jit.backends.llvm.values import F32, F64, I32, I64, forgotten
 from rosetta_jit.kernel.nodes import Block, Expect, Fill, If, Let, Load, Require, Return, SetField, Stmt, Store
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.walk import expressions_of

@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import F32, F64, I8, I32, I64, POINTER, constant, intrinsic
 from rosetta_jit.backends.llvm.support import BOTH, declared
+from rosetta_jit.backends.llvm.values import F32, F64, I8, I32, I64, POINTER, constant, intrinsic
 from rosetta_jit.kernel.decimals import FIRST, LAST, LEAST_NORMAL
 from rosetta_jit.kernel.limits import MAX_DIGITS
 

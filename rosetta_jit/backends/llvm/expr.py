@@ -12,8 +12,9 @@ from typing import assert_never
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import F32, I1, I8, I64, LLVM_TYPES, POINTER, Frame, Variable, constant, intrinsic, is_float, is_signed
+from rosetta_jit.backends.llvm.frame import Frame, Variable
 from rosetta_jit.backends.llvm.support import declared
+from rosetta_jit.backends.llvm.values import F32, I1, I8, I64, LLVM_TYPES, POINTER, constant, intrinsic, is_float, is_signed
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import BEGIN, type_of
 from rosetta_jit.startup.sha import sha256

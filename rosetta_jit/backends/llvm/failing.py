@@ -10,9 +10,11 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.llvm.alike import Number
+from rosetta_jit.backends.llvm.exits import StoredExit
 from rosetta_jit.backends.llvm.expr import expression
-from rosetta_jit.backends.llvm.frame import COLD, I64, Frame, StoredExit, constant
+from rosetta_jit.backends.llvm.frame import Frame
 from rosetta_jit.backends.llvm.sites import site_of
+from rosetta_jit.backends.llvm.values import COLD, I64, constant
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import BEGIN

@@ -8,32 +8,16 @@ so many registers, and LLVM would spend minutes on finding that out.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
 
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.alike import NOTHING, Found, Number
+from rosetta_jit.backends.llvm.exits import Exit, StoredExit
+from rosetta_jit.backends.llvm.values import I8, I64, POINTER, constant, state_word
 from rosetta_jit.kernel.ir import Routine
-from rosetta_jit.kernel.nodes import Call, Scalar
+from rosetta_jit.kernel.nodes import Call
 from rosetta_jit.kernel.state import ADDRESS, CAPACITY, HIDDEN, LANES, NOW, NUMBER, REGISTERS, USED, lane_word
 from rosetta_jit.startup.dataclass import dataclass, field
-
-I1, I8, I16, I32, I64 = (ir.IntType(bits) for bits in (1, 8, 16, 32, 64))
-F32, F64, POINTER = ir.FloatType(), ir.DoubleType(), ir.PointerType()
-
-LLVM_TYPES: dict[str, ir.Type] = {
-    "bool": I1,
-    "i8": I8,
-    "u8": I8,
-    "i16": I16,
-    "u16": I16,
-    "i32": I32,
-    "u32": I32,
-    "i64": I64,
-    "u64": I64,
-    "f32": F32,
-    "f64": F64,
-}
 
 MESSAGE = (-1, 0)
 """Among what is loaded at the start, by lane and word, the address of the message."""
@@ -47,36 +31,8 @@ LIMIT = -3
 CROWDED, CROWDED_DECODER = 64, 24
 """Lanes from which on an encoder, and a decoder, keeps what it knows of them in memory. A decoder has their used lengths to keep, too."""
 
-COLD = (1 << 20, 1)
-"""Branch weights where the second edge is taken for a broken message only."""
-
-
-INDICES = 2
-"""Which of the words of a failure is its first index: before it stand the site and the offset."""
-
 ESCAPED = ir.FunctionType(ir.VoidType(), [POINTER])
 """The type of an instruction that does nothing with a slot, but takes its address: LLVM leaves the slot in memory."""
-
-
-def forgotten(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
-    """The same integer, of which LLVM knows nothing: an instruction that does nothing, but may do anything for all that it can tell."""
-    return builder.asm(ir.FunctionType(number.type, [number.type]), "", "=r,0", [number], side_effect=False)
-
-
-def is_float(scalar: Scalar) -> bool:
-    """Whether a scalar is one of IEEE 754."""
-    return scalar in ("f32", "f64")
-
-
-def is_signed(scalar: Scalar) -> bool:
-    """Whether a scalar is a signed integer."""
-    return scalar in ("i8", "i16", "i32", "i64")
-
-
-@lru_cache(maxsize=1024)
-def constant(value: int) -> ir.Constant:
-    """An int64 constant. One object prints its text once."""
-    return ir.Constant(I64, value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,72 +52,6 @@ class Variable:
 
     slot: ir.Value
     type: ir.Type
-
-
-@dataclass(slots=True)
-class Exit:
-    """A block that several edges lead to, with the values that they bring."""
-
-    block: ir.Block
-    phis: tuple[ir.PhiInstr, ...]
-
-    @staticmethod
-    def new(entry: ir.IRBuilder, name: str, values: int) -> Exit:
-        """An empty one, for so many values."""
-        block = entry.function.append_basic_block(name)
-        builder = ir.IRBuilder(block)
-        return Exit(block, tuple(builder.phi(I64) for _ in range(values)))
-
-    def drop(self) -> None:
-        """No edge leads here: a block without edges cannot have phis."""
-        for phi in self.phis:
-            self.block.instructions.remove(phi)
-        ir.IRBuilder(self.block).unreachable()
-
-    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value]) -> None:
-        """End the builder's block with a jump here; values that are not given are 0."""
-        for phi, value in zip(self.phis, (*values, *[constant(0)] * (len(self.phis) - len(values))), strict=True):
-            phi.add_incoming(value, builder.block)
-        builder.branch(self.block)
-
-    @property
-    def is_reached(self) -> bool:
-        return bool(self.phis[0].incomings)
-
-
-@dataclass(slots=True)
-class StoredExit:
-    """A block that very many edges lead to: each stores its values in words of the state, whose addresses are computed once.
-
-    LLVM looks through all edges of a phi for each edge that it moves, which takes quadratic time. So it does with blocks whose last
-    instructions are the same; theirs stores the site, in which they differ. ``shared`` are blocks on the way that store the same indices
-    for many edges, by these and by the values that they are computed from. ``numbers`` are those of the words.
-    """
-
-    block: ir.Block
-    words: tuple[ir.Value, ...]
-    numbers: tuple[int, ...]
-    is_reached: bool = False
-    shared: dict[tuple[object, ...], ir.Block] = field(default_factory=dict[tuple[object, ...], "ir.Block"])
-
-    def enter(self, builder: ir.IRBuilder, values: Sequence[ir.Value], through: ir.Block) -> None:
-        """End the builder's block with a jump to a block on the way, or to this; words whose values are not given stay as they are."""
-        self._store(builder, self.words, values)
-        builder.branch(through)
-        self.is_reached = True
-
-    def drop(self) -> None:
-        """No edge leads here."""
-        ir.IRBuilder(self.block).unreachable()
-
-    def enter_with_indices(self, builder: ir.IRBuilder, indices: Sequence[ir.Value]) -> None:
-        """The same where the site and the offset are stored before."""
-        self._store(builder, self.words[INDICES:], indices)
-        builder.branch(self.block)
-
-    def _store(self, builder: ir.IRBuilder, words: Sequence[ir.Value], values: Sequence[ir.Value]) -> None:
-        for word, value in reversed(tuple(zip(words, values, strict=False))):
-            builder.store(value, word, align=8)
 
 
 @dataclass(frozen=True, slots=True)
@@ -374,16 +264,3 @@ def new_function(module: ir.Module, signature: ir.FunctionType, name: str, argum
 def leave_copies(function: ir.Function) -> None:
     """Have LLVM leave copies in the loops of an empty function: what is nothing but a copy is one already (`kernel.passes.bulk`)."""
     set[str].add(function.attributes, '"no-builtin-memcpy"')  # llvmlite's own `add` does not know it
-
-
-def state_word(builder: ir.IRBuilder, state: ir.Value, word: int | ir.Value) -> ir.Value:
-    """The address of a word of the holder's state."""
-    number = constant(word) if isinstance(word, int) else word
-    return builder.gep(state, [number], inbounds=True, source_etype=I64)
-
-
-def intrinsic(module: ir.Module, name: str, result: ir.Type, parameters: Sequence[ir.Type]) -> ir.Function:
-    """A function of LLVM or of a module, declared once."""
-    if name in module.globals:
-        return module.globals[name]
-    return ir.Function(module, ir.FunctionType(result, parameters), name)

@@ -16,22 +16,12 @@ from llvmlite import ir
 from rosetta_jit.backends.llvm import checks as llvm_checks
 from rosetta_jit.backends.llvm import definitions
 from rosetta_jit.backends.llvm.alike import NOTHING, Found, may_have_series, may_share
-from rosetta_jit.backends.llvm.frame import (
-    COLD,
-    I64,
-    POINTER,
-    Exit,
-    Frame,
-    Parameters,
-    StoredExit,
-    constant,
-    leave_copies,
-    new_function,
-    state_word,
-)
+from rosetta_jit.backends.llvm.exits import Exit, StoredExit
+from rosetta_jit.backends.llvm.frame import Frame, Parameters, leave_copies, new_function
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.routines import Printed, routines_of
 from rosetta_jit.backends.llvm.usual import without_row
+from rosetta_jit.backends.llvm.values import COLD, I64, POINTER, constant, state_word
 from rosetta_jit.backends.printing import counted_lanes, emptied_lanes, statements
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Block, Call, Expect, Expr, HostCall, Require, Stmt

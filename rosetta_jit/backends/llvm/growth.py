@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from llvmlite import ir
 
+from rosetta_jit.backends.llvm.exits import StoredExit
 from rosetta_jit.backends.llvm.failing import go_on, on_the_way
-from rosetta_jit.backends.llvm.frame import I64, Frame, StoredExit, constant, state_word
+from rosetta_jit.backends.llvm.frame import Frame
+from rosetta_jit.backends.llvm.values import I64, constant, state_word
 from rosetta_jit.kernel.state import GROW, GROW_LANE, GROW_ROWS
 
 

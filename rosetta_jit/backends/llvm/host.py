@@ -10,7 +10,8 @@ from __future__ import annotations
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.expr import expression, pointer
-from rosetta_jit.backends.llvm.frame import I8, I64, LLVM_TYPES, POINTER, Frame, intrinsic
+from rosetta_jit.backends.llvm.frame import Frame
+from rosetta_jit.backends.llvm.values import I8, I64, LLVM_TYPES, POINTER, intrinsic
 from rosetta_jit.kernel.nodes import HostCall, Scalar
 from rosetta_jit.kernel.terms import type_of
 from rosetta_jit.kernel.walk import extents_of

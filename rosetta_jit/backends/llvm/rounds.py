@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.expr import expression
-from rosetta_jit.backends.llvm.frame import I64, Frame, Variable, forgotten
+from rosetta_jit.backends.llvm.frame import Frame, Variable
+from rosetta_jit.backends.llvm.values import I64, forgotten
 from rosetta_jit.backends.printing import statements
 from rosetta_jit.kernel.nodes import Assign, Block, Const, Expect, If, Local, Switch, Var, While
 from rosetta_jit.startup.dataclass import dataclass

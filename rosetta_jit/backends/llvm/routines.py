@@ -13,9 +13,11 @@ from functools import lru_cache
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm import stmt as llvm_stmt
+from rosetta_jit.backends.llvm.exits import Exit
 from rosetta_jit.backends.llvm.expr import expression
-from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, POINTER, Exit, Frame, Parameters, constant, new_function
+from rosetta_jit.backends.llvm.frame import Frame, Parameters, new_function
 from rosetta_jit.backends.llvm.lines import Lines
+from rosetta_jit.backends.llvm.values import I64, LLVM_TYPES, POINTER, constant
 from rosetta_jit.backends.printing import emptied_lanes, statements
 from rosetta_jit.kernel.ir import Kernel, Routine
 from rosetta_jit.kernel.nodes import Call, For, While

@@ -10,8 +10,9 @@ from llvmlite import ir
 
 from rosetta_jit.backends.llvm.alike import NOTHING, Number, Series
 from rosetta_jit.backends.llvm.expr import expression, fill_memory
-from rosetta_jit.backends.llvm.frame import I64, LLVM_TYPES, Frame, Stretch, constant, forgotten, state_word
+from rosetta_jit.backends.llvm.frame import Frame, Stretch
 from rosetta_jit.backends.llvm.tables import signed, table
+from rosetta_jit.backends.llvm.values import I64, LLVM_TYPES, constant, forgotten, state_word
 from rosetta_jit.kernel.nodes import Block, Direction, Local, Switch
 from rosetta_jit.kernel.state import LANE_WORDS, USED, lane_word
 from rosetta_jit.kernel.terms import type_of

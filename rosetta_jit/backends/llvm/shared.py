@@ -14,26 +14,15 @@ from typing import TYPE_CHECKING
 from llvmlite import ir
 
 from rosetta_jit.backends.llvm.alike import Number, Place, Shared
+from rosetta_jit.backends.llvm.exits import Exit, StoredExit
 from rosetta_jit.backends.llvm.expr import expression
 from rosetta_jit.backends.llvm.failing import cold
-from rosetta_jit.backends.llvm.frame import (
-    I64,
-    LLVM_TYPES,
-    POINTER,
-    Exit,
-    Frame,
-    Parameters,
-    StoredExit,
-    Stretch,
-    Variable,
-    constant,
-    new_function,
-    state_word,
-)
+from rosetta_jit.backends.llvm.frame import Frame, Parameters, Stretch, Variable, new_function
 from rosetta_jit.backends.llvm.growth import grow
 from rosetta_jit.backends.llvm.lines import Lines
 from rosetta_jit.backends.llvm.series import columns_of, words_of
 from rosetta_jit.backends.llvm.tables import table
+from rosetta_jit.backends.llvm.values import I64, LLVM_TYPES, POINTER, constant, state_word
 from rosetta_jit.kernel.nodes import Block, Local
 from rosetta_jit.kernel.state import GROW
 

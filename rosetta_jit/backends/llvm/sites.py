@@ -7,8 +7,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.llvm.alike import Number
-from rosetta_jit.backends.llvm.frame import I64, Frame, Stretch, constant, state_word
+from rosetta_jit.backends.llvm.frame import Frame, Stretch
 from rosetta_jit.backends.llvm.tables import table
+from rosetta_jit.backends.llvm.values import I64, constant, state_word
 
 if TYPE_CHECKING:
     from llvmlite import ir

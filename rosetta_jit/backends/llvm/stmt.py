@@ -21,8 +21,9 @@ from rosetta_jit.backends.llvm.expr import (
     wire_pointer,
 )
 from rosetta_jit.backends.llvm.failing import check, cold, fail, require
-from rosetta_jit.backends.llvm.frame import COLD, I64, LLVM_TYPES, Frame, Variable, constant, forgotten
+from rosetta_jit.backends.llvm.frame import Frame, Variable
 from rosetta_jit.backends.llvm.growth import reserve
+from rosetta_jit.backends.llvm.values import COLD, I64, LLVM_TYPES, constant, forgotten
 from rosetta_jit.kernel import ir as kernel
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in

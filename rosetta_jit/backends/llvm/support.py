@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import F64, I1, I32, I64, POINTER
+from rosetta_jit.backends.llvm.values import F64, I1, I32, I64, POINTER
 
 BOTH = ir.LiteralStructType([I64, I64])
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import I64
+from rosetta_jit.backends.llvm.values import I64
 from rosetta_jit.startup.sha import sha256
 
 

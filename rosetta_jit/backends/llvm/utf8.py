@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from llvmlite import ir
 
-from rosetta_jit.backends.llvm.frame import I1, I8, I64, constant
+from rosetta_jit.backends.llvm.values import I1, I8, I64, constant
 
 WORD = 8
 VECTOR = 4 * WORD

@@ -27,7 +27,8 @@ from rosetta_jit.backends.llvm.expr import (
     scalar_constant,
     wire_pointer,
 )
-from rosetta_jit.backends.llvm.frame import I32, LLVM_TYPES, Frame, intrinsic, is_float
+from rosetta_jit.backends.llvm.frame import Frame
+from rosetta_jit.backends.llvm.values import I32, LLVM_TYPES, intrinsic, is_float
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in, names_read
 from rosetta_jit.kernel.terms import type_of

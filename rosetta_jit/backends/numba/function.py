@@ -29,7 +29,7 @@ from numba import njit, types
 from numba.extending import intrinsic
 
 from rosetta_jit.backends.llvm import function as llvm
-from rosetta_jit.backends.llvm.frame import POINTER
+from rosetta_jit.backends.llvm.values import POINTER
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.traits import calls_to_host
 
