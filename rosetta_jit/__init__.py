@@ -145,7 +145,7 @@ def check(
     MappingError
         Everything that is wrong with the mapping and with what it imports.
     """
-    from rosetta_jit.pipeline.build import check_mapping
+    from rosetta_jit.pipeline.checked_mapping import check_mapping
 
     return check_mapping(mapping, search_path, parameters, schema=schema, encoding=encoding, framework=framework)
 

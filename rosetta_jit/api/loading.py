@@ -67,7 +67,7 @@ def _runs_in_python(name: str) -> bool:
 
 
 def _within_stack() -> AbstractContextManager[None]:
-    from rosetta_jit.pipeline.build import within_stack
+    from rosetta_jit.pipeline.depth import within_stack
 
     return within_stack()
 

@@ -23,7 +23,8 @@ from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.lowering.rules.scalars import scalar_type
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.types import Ref, Schema, Type
-from rosetta_jit.pipeline.build import Build, within_stack
+from rosetta_jit.pipeline.build import Build
+from rosetta_jit.pipeline.depth import within_stack
 from rosetta_jit.pipeline.request import Request
 from rosetta_jit.pipeline.wires import arrival_registers
 from rosetta_jit.startup.dataclass import dataclass, replace

@@ -5,15 +5,12 @@ texts → schemas and mapping → checked rules → encoding, layout → kernels
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Mapping
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast, get_args
 
 from rosetta_jit.backends.backend import Backend
 from rosetta_jit.backends.installed import backend_named
 from rosetta_jit.backends.installed import installed as installed_backends
 from rosetta_jit.catalogue import pipeline as words
-from rosetta_jit.errors import SchemaError
 from rosetta_jit.frameworks.base import Choices, Framework
 from rosetta_jit.frameworks.installed import GROUP as FRAMEWORKS
 from rosetta_jit.kernel.host import UserFunction
@@ -27,7 +24,6 @@ from rosetta_jit.lowering.writer import References, TooManyStatementsError
 from rosetta_jit.model.layout import Layout, layout
 from rosetta_jit.model.serial import to_plain
 from rosetta_jit.model.types import Ref, Schema, Struct
-from rosetta_jit.parsing.search import Reading, SearchPath
 from rosetta_jit.pipeline.declared import declared_types, files_of, of_a_size, readers_of, report
 from rosetta_jit.pipeline.kept_state import kept_of
 from rosetta_jit.pipeline.recent import recently
@@ -49,10 +45,9 @@ from rosetta_jit.wire.codec import Encoding, Rare
 if TYPE_CHECKING:
     from rosetta_jit.backends.entry.program import Options
     from rosetta_jit.language.check.mapping import Checked
-    from rosetta_jit.pipeline import checked_mapping, mapped, stages
-    from rosetta_jit.pipeline.checked_mapping import CheckedMapping
+    from rosetta_jit.pipeline import mapped, stages
 else:
-    checked_mapping, mapped, stages = late("rosetta_jit.pipeline", "checked_mapping", "mapped", "stages")
+    mapped, stages = late("rosetta_jit.pipeline", "mapped", "stages")
 
 
 class Build:
@@ -336,41 +331,6 @@ class Build:
         """The files of installed packages whose frameworks and functions this program may use: what is kept of it depends on them."""
         functions = mapped.files_of_functions() if self.request.mapping is not None else ()
         return (*files_of_offered(FRAMEWORKS), *functions)
-
-
-@contextmanager
-def within_stack() -> Generator[None]:
-    """Around work on texts and types: what nests within the limits may still be too deep for a caller who has little stack left.
-
-    Raises
-    ------
-    SchemaError
-        It is.
-    """
-    try:
-        yield
-    except RecursionError as error:
-        raise SchemaError((words.too_deep(),)) from error
-
-
-@within_stack()
-def check_mapping(
-    path: str,
-    folders: Iterable[str] = (),
-    parameters: Mapping[str, object] | None = None,
-    *,
-    schema: Mapping[str, str] | None = None,
-    encoding: str | None = None,
-    framework: str | None = None,
-) -> CheckedMapping:
-    """What is known of a mapping; raises MappingError with all that is wrong."""
-    search, reading = SearchPath.of(folders, files=schema), Reading()
-    request = Request("decode", mapping=path, encoding=encoding, framework=framework)
-    readers = readers_of(request)
-    known = [name for each in readers.frameworks.values() for name in each.encodings]
-    if encoding is not None and encoding not in known:
-        raise report(request, words.no_encoding(encoding, known))
-    return checked_mapping.CheckedMapping(mapped.checked_source(search.open(path), readers, search, reading, parameters))
 
 
 def plain_site(site: Site) -> list[Any]:

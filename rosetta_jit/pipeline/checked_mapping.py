@@ -1,15 +1,21 @@
-"""What is known of a mapping that has no errors: its warnings, and what it guarantees."""
+"""Checking a mapping, and what is known of one that has no errors: its warnings, and what it guarantees."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from rosetta_jit.catalogue import pipeline as words
+from rosetta_jit.diagnostics import Diagnostic
+from rosetta_jit.language.check.mapping import Checked
+from rosetta_jit.parsing.search import Reading, SearchPath
+from rosetta_jit.pipeline import mapped
+from rosetta_jit.pipeline.declared import readers_of, report
+from rosetta_jit.pipeline.depth import within_stack
+from rosetta_jit.pipeline.request import Request
 from rosetta_jit.startup.cached import cached_property
 
 if TYPE_CHECKING:
-    from rosetta_jit.diagnostics import Diagnostic
-    from rosetta_jit.language.check.mapping import Checked
     from rosetta_jit.language.laws.guarantees import Laws
 
 
@@ -47,3 +53,23 @@ class CheckedMapping:
 
     def __len__(self) -> int:
         return len(self.warnings)
+
+
+@within_stack()
+def check_mapping(
+    path: str,
+    folders: Iterable[str] = (),
+    parameters: Mapping[str, object] | None = None,
+    *,
+    schema: Mapping[str, str] | None = None,
+    encoding: str | None = None,
+    framework: str | None = None,
+) -> CheckedMapping:
+    """What is known of a mapping; raises MappingError with all that is wrong."""
+    search, reading = SearchPath.of(folders, files=schema), Reading()
+    request = Request("decode", mapping=path, encoding=encoding, framework=framework)
+    readers = readers_of(request)
+    known = [name for each in readers.frameworks.values() for name in each.encodings]
+    if encoding is not None and encoding not in known:
+        raise report(request, words.no_encoding(encoding, known))
+    return CheckedMapping(mapped.checked_source(search.open(path), readers, search, reading, parameters))

@@ -316,7 +316,7 @@ def test_results_of_another_type_are_refused(backend):
 
 
 def test_check_needs_no_functions(tmp_path):
-    from rosetta_jit.pipeline.build import check_mapping
+    from rosetta_jit.pipeline.checked_mapping import check_mapping
 
     for name, text in {**FILES, "m.mapping": HEAD + UNPACK}.items():
         (tmp_path / name).write_text(text)
