@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 
 def directs(walk: Walk, at: str) -> Iterator[Direct]:
     """Containers of numbers and texts, of an object that is called ``at``."""
-    for found, lane, row, inner in spans(walk, at):
-        if isinstance(found, String | Bytes | Array) and is_plain(walk, found, lane):
-            yield Direct(lane, row, Spot(walk.text("direct", inner), inner.owner, inner.field))
+    for found, span, row, inner in spans(walk, at):
+        if isinstance(found, String | Bytes | Array) and is_plain(walk, found, span.lane):
+            yield Direct(span.lane, row, Spot(walk.text("direct", inner), inner.owner, inner.field))
 
 
-def spans(walk: Walk, at: str) -> Iterator[tuple[Type, int, str, Spot]]:
-    """What has a length: its type, its lane, its span in the row, and the field of the class."""
+def spans(walk: Walk, at: str) -> Iterator[tuple[Type, Span, str, Spot]]:
+    """What has a length: its type, where its span lies, what that is called in the row, and the field of the class."""
     return _spans(walk, Ref(walk.unit.type), walk.unit.layout.root, walk.lanes.all[0].element, "row", Spot(at))
 
 
-def _spans(walk: Walk, type_: Type, slot: Slot, element: object, row: str, spot: Spot) -> Iterator[tuple[Type, int, str, Spot]]:
+def _spans(walk: Walk, type_: Type, slot: Slot, element: object, row: str, spot: Spot) -> Iterator[tuple[Type, Span, str, Spot]]:
     resolved = walk.unit.schema.resolve(type_)
     if not isinstance(resolved, Struct) or not isinstance(slot, Row) or not isinstance(element, RowStruct):
         return
@@ -36,7 +36,7 @@ def _spans(walk: Walk, type_: Type, slot: Slot, element: object, row: str, spot:
             continue
         found, at, inner = walk.unit.schema.resolve(each.type), f"{row}.{own.identifier}", walk.member_of(spot.at, name)
         if isinstance(member.slot, Span):
-            yield found, member.slot.lane, at, inner
+            yield found, member.slot, at, inner
         elif isinstance(found, Struct):
             yield from _spans(walk, found, member.slot, own.type, at, Spot(inner.at))
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from rosetta_jit.generate.c.lanes import Given
 from rosetta_jit.generate.cleared import clears
-from rosetta_jit.generate.cpp.always import is_plain
-from rosetta_jit.generate.cpp.lists_in_place import spans_of
+from rosetta_jit.generate.cpp.always import is_plain, spans
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.kernel import nodes
@@ -40,7 +39,7 @@ def arrays_in_place(walk: Walk, at: str) -> list[InPlace]:
     found: list[InPlace] = []
     if kernel is None or wires_of(unit):
         return found
-    for type_, slot, spot in spans_of(walk, at):
+    for type_, slot, _, spot in spans(walk, at):
         if isinstance(type_, Array) and is_plain(walk, type_, slot.lane) and walk.text("laid out", spot):
             row = walk.lanes.type(slot.lane)
             given = Given(walk.text("sized", spot, row=row, count="$count"))

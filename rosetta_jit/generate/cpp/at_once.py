@@ -8,18 +8,16 @@ set nothing count as something wrong.
 from __future__ import annotations
 
 from rosetta_jit.backends.printing import Namespace
-from rosetta_jit.generate.c.expressions import expression
-from rosetta_jit.generate.c.function import Function, lacks
+from rosetta_jit.generate.c.function import Function
 from rosetta_jit.generate.c.lanes import Lanes
-from rosetta_jit.generate.c.positions import after_binding, after_require
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
-from rosetta_jit.generate.cpp.checks import IMPLIED, fewer
+from rosetta_jit.generate.cpp.checks import fewer
 from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, lanes_of_nothing, of_empty_lists, of_nothing
 from rosetta_jit.generate.cpp.few_elements import lanes_of_few_elements, of_few_elements
+from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
 from rosetta_jit.generate.cpp.opened import without_asking, without_counting
-from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.kernel import nodes
@@ -27,17 +25,6 @@ from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import replace
-
-SHARED = "rosetta_jit::detail::"
-"""Where the header that all units share has what such decoders call."""
-MOST = 64
-"""How many statements are worth to be printed wherever a message is read."""
-FEW_CHECKS = 8
-"""Behind more of them a compiler takes code for such as seldom runs, and makes it short, not quick, unless it is said that none fails.
-
-Of fewer that is said where no text is looked at: a compiler then calls functions of a text that it would else put in their place."""
-PARAMETERS = frozenset({"given_object", "bytes", "end"})
-"""What such a decoder is given."""
 
 
 def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes]) -> tuple[str, int]:
@@ -89,11 +76,6 @@ def _reached(kernel: Kernel, lanes: Lanes, apart: Kernel, open_lanes: Lanes) -> 
     return next(((*parts, reached) for parts, reached in found), None)
 
 
-def is_shared(function: str) -> bool:
-    """Whether the header that all units share has a function of the support."""
-    return function.startswith(("load_", "store_")) or function in ("lacks", "lacks_behind", "copy_bytes")
-
-
 def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
     """What a body checks and what it sets, if it does nothing else; a check that fails stands for a branch that sets nothing."""
     if not body:
@@ -137,46 +119,6 @@ def _starts_with_bytes(checks: list[nodes.Stmt]) -> bool:
             return True
         case _:
             return False
-
-
-def are_marked(block: nodes.Block) -> bool:
-    """Whether the checks of a block are said to fail seldom."""
-    checks = [stmt for stmt in block if isinstance(stmt, nodes.Require | nodes.Expect)]
-    has_text = any(isinstance(stmt, nodes.Expect) and isinstance(stmt.condition, nodes.IsText) for stmt in checks)
-    return len(checks) > FEW_CHECKS or not has_text
-
-
-def check(function: Function, stmt: nodes.Stmt, otherwise: str, *, marked: bool) -> None:
-    """A check, which may be said to fail seldom, or a local that one needs; ``otherwise`` is what is done where it fails.
-
-    Of texts those that are ASCII are read at once.
-    """
-    condition = _failing(function, stmt)
-    if condition is None:
-        return
-    with function.block(f"if (ROSETTA_JIT_UNLIKELY({bare(condition)}))" if marked else f"if ({bare(condition)})"):
-        function.line(otherwise)
-
-
-def _failing(function: Function, stmt: nodes.Stmt) -> str | None:
-    """The condition under which a check fails; None of a local, which is printed, and of what other checks say."""
-    scope = function.scope
-    match stmt:
-        case nodes.Require(at, size, failure):
-            condition = None if failure == IMPLIED else lacks(function, at, size)
-            function.known = after_require(function.known, at, size)
-            return condition
-        case nodes.Expect(nodes.IsText(nodes.Wire(at), size), _):
-            where = ", ".join((scope.takes("bytes"), bare(expression(scope, at)), bare(expression(scope, size))))
-            return f"!{SHARED}is_ascii({where})"
-        case nodes.Expect(condition, _):
-            return expression(scope, folded(nodes.Unary("not", condition)))
-        case nodes.Let(name, value):
-            print_block(function, (stmt,))
-            function.known = after_binding(function.known, name, value)
-            return None
-        case _:
-            raise AssertionError(stmt)
 
 
 def _print_effects(function: Function, effects: nodes.Block) -> None:

@@ -54,9 +54,10 @@ def taken(walk: Walk, at: str) -> list[Listed]:
 
 def _lists(walk: Walk, at: str) -> Iterator[Listed]:
     unit = walk.unit
-    for type_, lane, row, spot in spans(walk, at):
-        if isinstance(type_, Array) and not isinstance(unit.layout.lanes[lane].element, Number) and unit.layout.lanes[lane].links is None:
-            yield Listed(Direct(lane, row, Spot(walk.text("direct", spot), spot.owner, spot.field)), type_.element)
+    for type_, span, row, spot in spans(walk, at):
+        layout = unit.layout.lanes[span.lane]
+        if isinstance(type_, Array) and not isinstance(layout.element, Number) and layout.links is None:
+            yield Listed(Direct(span.lane, row, Spot(walk.text("direct", spot), spot.owner, spot.field)), type_.element)
 
 
 def is_readable(walk: Walk, type_: Type, slot: Slot) -> bool:

@@ -15,8 +15,7 @@ from rosetta_jit.generate.cpp.always import is_plain
 from rosetta_jit.generate.cpp.lists import taken
 from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
 from rosetta_jit.generate.cpp.opened import in_place
-from rosetta_jit.generate.cpp.reading import container_type
-from rosetta_jit.generate.cpp.spots import Spot
+from rosetta_jit.generate.cpp.spots import Spot, container_type
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.model.layout import Number, Row, Slot, Span
@@ -109,13 +108,6 @@ def messages_of(walk: Walk, lane: int, struct: str, at: str) -> Iterator[tuple[i
     for type_, slot, place in _spans(walk, Ref(struct), walk.unit.layout.lanes[lane].element, _Place(Spot(at), Spot(HOLDER), lane)):
         if slot.lane in walk.visited and isinstance(walk.unit.schema.resolve(type_), Array):
             yield lane, slot, Spot(walk.text("direct", place.spot))
-
-
-def spans_of(walk: Walk, at: str) -> Iterator[tuple[Type, Span, Spot]]:
-    """What has a length and is in every message, of an object that statements call ``at``."""
-    place = _Place(Spot(at), Spot(HOLDER), 0)
-    for type_, slot, inner in _spans(walk, Ref(walk.unit.type), walk.unit.layout.root, place):
-        yield walk.unit.schema.resolve(type_), slot, inner.spot
 
 
 def _spans(walk: Walk, type_: Type, slot: Slot, place: _Place) -> Iterator[tuple[Type, Span, _Place]]:

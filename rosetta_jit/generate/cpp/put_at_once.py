@@ -16,10 +16,9 @@ from rosetta_jit.generate.c.lanes import Given, Lanes
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
-from rosetta_jit.generate.cpp.always import is_plain, numbers
-from rosetta_jit.generate.cpp.at_once import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
+from rosetta_jit.generate.cpp.always import is_plain, numbers, spans
 from rosetta_jit.generate.cpp.empty_lists import NOT_EMPTY, of_no_elements
-from rosetta_jit.generate.cpp.lists_in_place import spans_of
+from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
 from rosetta_jit.generate.cpp.measured_first import measured_first
 from rosetta_jit.generate.cpp.messages_within import descents_of
 from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
@@ -122,7 +121,7 @@ def _object(walk: Walk, *, is_any_shown: bool) -> Object:
     lanes, elements, lists = walk.lanes, list[Shown](), dict[int, int | None]()
     shown = {(0, offset): f"rosetta_jit::detail::got<$type>({spot.at})" for offset, _, spot in numbers(walk, OBJECT)}
     given, starts, opened = dict[int, Given](), set[int](), set[int]()
-    for type_, slot, spot in spans_of(walk, OBJECT):
+    for type_, slot, _, spot in spans(walk, OBJECT):
         if isinstance(type_, String | Bytes | Array) and is_plain(walk, type_, slot.lane):
             at = walk.text("direct", spot)
             given[slot.lane] = Given("", f"rosetta_jit::detail::shown_rows<{lanes.type(slot.lane)}>({at})")

@@ -14,7 +14,7 @@ from rosetta_jit.generate.cpp.lists import row_name, viewed
 from rosetta_jit.generate.cpp.lists_within import lists_within
 from rosetta_jit.generate.cpp.messages_within import has_lengths, visited_lanes
 from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
-from rosetta_jit.generate.cpp.spots import Direct, Listed
+from rosetta_jit.generate.cpp.spots import Direct, Listed, container_type
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row
@@ -143,11 +143,6 @@ def _view(walk: Walk, listed: Listed) -> str:
     """The type of a list that is viewed."""
     lane, container = listed.direct.lane, container_type(listed.direct.spot.at)
     return f"view<{walk.lanes.type(lane)}, {container}, {row_name(walk.lanes, lane)}>"
-
-
-def container_type(at: str) -> str:
-    """The type of a container."""
-    return f"std::remove_const_t<std::remove_reference_t<decltype({at})>>"
 
 
 def _is_collected(unit: Unit) -> bool:

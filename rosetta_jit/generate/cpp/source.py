@@ -24,7 +24,6 @@ from rosetta_jit.generate.cpp.messages_within import classes, collecting, collec
 from rosetta_jit.generate.cpp.packed import packed_structs
 from rosetta_jit.generate.cpp.read_in_place import is_local
 from rosetta_jit.generate.cpp.reading import (
-    container_type,
     copied,
     directs_of,
     emptying,
@@ -36,7 +35,7 @@ from rosetta_jit.generate.cpp.reading import (
     writes_apart,
 )
 from rosetta_jit.generate.cpp.set_in_place import straight_numbers
-from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot
+from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot, container_type
 from rosetta_jit.generate.cpp.walk import Walk
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes

@@ -39,3 +39,8 @@ class ListWithin:
 
     listed: Listed
     within: Within
+
+
+def container_type(at: str) -> str:
+    """The type of a container."""
+    return f"std::remove_const_t<std::remove_reference_t<decltype({at})>>"
