@@ -38,6 +38,7 @@ HOLDS = FRAMEWORK | {"runtime.holder", "runtime.holder.objects"}
 LOG_READER = REPORTS | {"logs.base", "logs.limits", "logs.reading", "logs.reading.storage", "logs.reading.walking"}
 TRANSPORT = REPORTS | {"transports"}
 PRINTS = REPORTS | {"model", "kernel", "kernel.passes", "backends", "generate"}
+CPP = PRINTS | {"generate.c", "generate.cpp.objects", "generate.cpp.passes"}
 PYTHON = {"generate.c.lanes", "generate.c.unit_lanes"} | {f"generate.python.{room}" for room in ("passes", "printing", "runtime")}
 ANYTHING = (
     COMPILER
@@ -185,7 +186,12 @@ MAY_IMPORT = {
     "dask": REPORTS | {"logs"},
     "generate": REPORTS | {"model", "kernel", "kernel.passes", "language"},
     "generate.c": PRINTS | {"backends.entry"},
-    "generate.cpp": PRINTS | {"generate.c"},
+    "generate.cpp": CPP | {"generate.cpp.decoding", "generate.cpp.encoding", "generate.cpp.header_checks"},
+    "generate.cpp.decoding": CPP | {"generate.cpp.header_checks"},
+    "generate.cpp.encoding": CPP | {"generate.cpp.header_checks"},
+    "generate.cpp.header_checks": CPP,
+    "generate.cpp.objects": PRINTS | {"generate.c"},
+    "generate.cpp.passes": PRINTS | {"generate.c"},
     "generate.python": PRINTS | PYTHON | {"generate.python.decoding", "generate.python.encoding"},
     "generate.python.decoding": PRINTS | PYTHON,
     "generate.python.encoding": PRINTS | PYTHON,

@@ -119,7 +119,7 @@ LANGUAGES = (
         fills_objects=True,
         holders=True,
         wires=True,
-        taken="rosetta_jit.generate.cpp.names:NOT_NAMESPACES",
+        taken="rosetta_jit.generate.cpp.objects.names:NOT_NAMESPACES",
     ),
     Language(
         "lisp",

@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from rosetta_jit.generate.cpp.checks import fewer
+from rosetta_jit.generate.cpp.passes.checks import fewer
 from rosetta_jit.kernel import arithmetic, nodes
 from rosetta_jit.kernel.terms import END, add, index, type_of
 

@@ -17,7 +17,7 @@ from rosetta_jit.errors import Kind, SchemaError
 from rosetta_jit.generate.build import Wishes, generated
 from rosetta_jit.generate.c.words import RESERVED
 from rosetta_jit.generate.cpp.language import INCLUDE, SHARED
-from rosetta_jit.generate.cpp.manners import MANNERS
+from rosetta_jit.generate.cpp.objects.manners import MANNERS
 from tests.generate import cpp, native
 from tests.generate.corpora import corpora
 from tests.generate.cpp import CAREFUL, QUICK, THOROUGH

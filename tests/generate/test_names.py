@@ -18,7 +18,7 @@ from rosetta_jit.api.options import type_request
 from rosetta_jit.cli import main
 from rosetta_jit.generate.build import NO_WISHES, Wishes, generated
 from rosetta_jit.generate.c.words import RESERVED
-from rosetta_jit.generate.cpp.manners import PROTOC
+from rosetta_jit.generate.cpp.objects.manners import PROTOC
 from rosetta_jit.generate.lisp.words import runtime_names, symbols
 from rosetta_jit.model.types import Ref
 from tests.generate import cpp, driver, lisp, native, python

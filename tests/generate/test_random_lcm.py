@@ -14,7 +14,7 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
 from rosetta_jit.generate.c.words import RESERVED
-from rosetta_jit.generate.cpp.walk import IDENTIFIER
+from rosetta_jit.generate.cpp.objects.walk import IDENTIFIER
 from tests.frameworks.lcm import declarations
 from tests.frameworks.lcm.lcm_files import LCM_GEN
 from tests.generate import cpp, native

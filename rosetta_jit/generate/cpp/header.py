@@ -11,14 +11,14 @@ from rosetta_jit.generate.c.header import made
 from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES
-from rosetta_jit.generate.cpp.classes import classes
-from rosetta_jit.generate.cpp.reading import writes_apart
+from rosetta_jit.generate.cpp.encoding.reading import writes_apart
+from rosetta_jit.generate.cpp.objects.classes import classes
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.types import Struct
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.cpp.objects.manners import Manners
 
 FOLDER = Path(__file__).parent
 RESET = (
@@ -115,7 +115,7 @@ def class_of(unit: Unit, manners: Manners) -> str:
 
 def root_class(unit: Unit) -> str:
     """The name of our own class for the message."""
-    from rosetta_jit.generate.cpp.classes import names_of
+    from rosetta_jit.generate.cpp.objects.classes import names_of
 
     return names_of(unit)[unit.type]
 

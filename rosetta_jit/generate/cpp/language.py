@@ -10,15 +10,15 @@ from rosetta_jit.generate.c.functions import Printed, print_kernel
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.language import parts_of
 from rosetta_jit.generate.cleared import without_clearing
-from rosetta_jit.generate.cpp.at_once import at_once, of_no_elements_at_once
-from rosetta_jit.generate.cpp.decoder import decoder_of, open_decoder_of
+from rosetta_jit.generate.cpp.decoding.at_once import at_once, of_no_elements_at_once
+from rosetta_jit.generate.cpp.decoding.decoder import decoder_of, open_decoder_of
+from rosetta_jit.generate.cpp.decoding.messages_in_place import MessagesInPlace, messages_in_place
+from rosetta_jit.generate.cpp.encoding.messages_within import descents_of
+from rosetta_jit.generate.cpp.encoding.put_at_once import put_at_once
+from rosetta_jit.generate.cpp.encoding.reading import copied_lanes, directs_of, reader, viewed_by
 from rosetta_jit.generate.cpp.header import AtOnce, header
-from rosetta_jit.generate.cpp.manners import MANNERS, Manners
-from rosetta_jit.generate.cpp.messages_in_place import MessagesInPlace, messages_in_place
-from rosetta_jit.generate.cpp.messages_within import descents_of
-from rosetta_jit.generate.cpp.opened import without_asking, without_counting
-from rosetta_jit.generate.cpp.put_at_once import put_at_once
-from rosetta_jit.generate.cpp.reading import copied_lanes, directs_of, reader, viewed_by
+from rosetta_jit.generate.cpp.objects.manners import MANNERS, Manners
+from rosetta_jit.generate.cpp.passes.opened import without_asking, without_counting
 from rosetta_jit.generate.cpp.source import source
 from rosetta_jit.generate.undamaged import SPANS, undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of

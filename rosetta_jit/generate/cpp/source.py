@@ -14,16 +14,14 @@ from rosetta_jit.generate.c.source import NO_ROOM, by_order, part_tables, run, s
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import RESERVED
-from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place
-from rosetta_jit.generate.cpp.between import between
-from rosetta_jit.generate.cpp.header import filled_in
-from rosetta_jit.generate.cpp.lists import row_name, row_struct, taken
-from rosetta_jit.generate.cpp.lists_in_place import Opened, messages_of, opened_lists
-from rosetta_jit.generate.cpp.messages_in_place import MessagesInPlace
-from rosetta_jit.generate.cpp.messages_within import classes, collecting, collectors, has_lengths
-from rosetta_jit.generate.cpp.packed import packed_structs
-from rosetta_jit.generate.cpp.read_in_place import is_local
-from rosetta_jit.generate.cpp.reading import (
+from rosetta_jit.generate.cpp.decoding.arrays_in_place import arrays_in_place
+from rosetta_jit.generate.cpp.decoding.lists_in_place import Opened, messages_of, opened_lists
+from rosetta_jit.generate.cpp.decoding.messages_in_place import MessagesInPlace
+from rosetta_jit.generate.cpp.decoding.packed import packed_structs
+from rosetta_jit.generate.cpp.decoding.set_in_place import straight_numbers
+from rosetta_jit.generate.cpp.encoding.messages_within import classes, collecting, collectors, has_lengths
+from rosetta_jit.generate.cpp.encoding.read_in_place import is_local
+from rosetta_jit.generate.cpp.encoding.reading import (
     copied,
     directs_of,
     emptying,
@@ -34,9 +32,11 @@ from rosetta_jit.generate.cpp.reading import (
     viewed_by,
     writes_apart,
 )
-from rosetta_jit.generate.cpp.set_in_place import straight_numbers
-from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot, container_type
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.header import filled_in
+from rosetta_jit.generate.cpp.objects.between import between
+from rosetta_jit.generate.cpp.objects.lists import row_name, row_struct, taken
+from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, Spot, container_type
+from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
@@ -46,7 +46,7 @@ from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
-    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.cpp.objects.manners import Manners
 
 FOLDER = Path(__file__).parent
 FILLED = "filled"

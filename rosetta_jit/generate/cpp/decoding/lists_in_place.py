@@ -11,12 +11,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rosetta_jit.generate.c.lanes import Straight
-from rosetta_jit.generate.cpp.always import is_plain
-from rosetta_jit.generate.cpp.lists import taken
-from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
-from rosetta_jit.generate.cpp.opened import in_place
-from rosetta_jit.generate.cpp.spots import Spot, container_type
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.objects.always import is_plain
+from rosetta_jit.generate.cpp.objects.lists import taken
+from rosetta_jit.generate.cpp.objects.spots import Spot, container_type
+from rosetta_jit.generate.cpp.objects.walk import Walk
+from rosetta_jit.generate.cpp.passes.numbers_apart import with_numbers_apart
+from rosetta_jit.generate.cpp.passes.opened import in_place
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Bytes, Ref, String, Struct, Type

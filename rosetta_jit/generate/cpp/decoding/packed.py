@@ -10,9 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from rosetta_jit.generate.c.lanes import Packed
 from rosetta_jit.generate.c.words import C_ROWS
-from rosetta_jit.generate.cpp.lists import NumberOf, numbers_of
-from rosetta_jit.generate.cpp.lists_in_place import Opened
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.decoding.lists_in_place import Opened
+from rosetta_jit.generate.cpp.objects.lists import NumberOf, numbers_of
+from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import WIDTH, Binary, Const, Expr, For, Let, Load, Local, Place, Scalar, SetField, Stmt
 from rosetta_jit.kernel.rewrite import locals_in

@@ -13,11 +13,11 @@ from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
-from rosetta_jit.generate.cpp.checks import fewer
-from rosetta_jit.generate.cpp.empty_lists import lanes_of_empty_lists, lanes_of_nothing, of_empty_lists, of_nothing
-from rosetta_jit.generate.cpp.few_elements import lanes_of_few_elements, of_few_elements
 from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
-from rosetta_jit.generate.cpp.opened import without_asking, without_counting
+from rosetta_jit.generate.cpp.passes.checks import fewer
+from rosetta_jit.generate.cpp.passes.empty_lists import lanes_of_empty_lists, lanes_of_nothing, of_empty_lists, of_nothing
+from rosetta_jit.generate.cpp.passes.few_elements import lanes_of_few_elements, of_few_elements
+from rosetta_jit.generate.cpp.passes.opened import without_asking, without_counting
 from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.kernel import nodes

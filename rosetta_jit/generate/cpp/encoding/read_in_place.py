@@ -17,7 +17,7 @@ from rosetta_jit.model.layout import Number, Row, Slot, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Enum, Map, Optional, Ref, String, Struct, Type, Union
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.cpp.walk import Walk
+    from rosetta_jit.generate.cpp.objects.walk import Walk
 
 
 def addressed_lanes(unit: Unit, direct: frozenset[int]) -> frozenset[int]:

@@ -11,7 +11,7 @@ from rosetta_jit.generate.c.constants import value_of
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.constants import constants_of, number_of
-from rosetta_jit.generate.cpp.names import OWN_WORDS, member_names
+from rosetta_jit.generate.cpp.objects.names import OWN_WORDS, member_names
 from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, NamedConstant, Optional, Ref, String, Struct, Type, Union

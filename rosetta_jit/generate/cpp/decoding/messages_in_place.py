@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.lanes import Lanes, Straight
 from rosetta_jit.generate.c.unit_lanes import own_lanes
-from rosetta_jit.generate.cpp.lists_in_place import Opened, messages_of, row_in_place
-from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
-from rosetta_jit.generate.cpp.numbers_kept import with_numbers_kept
-from rosetta_jit.generate.cpp.opened import in_place, without_asking
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.decoding.lists_in_place import Opened, messages_of, row_in_place
+from rosetta_jit.generate.cpp.objects.walk import Walk
+from rosetta_jit.generate.cpp.passes.numbers_apart import with_numbers_apart
+from rosetta_jit.generate.cpp.passes.numbers_kept import with_numbers_kept
+from rosetta_jit.generate.cpp.passes.opened import in_place, without_asking
 from rosetta_jit.generate.descents import Descents, NotNested, Visit, descended
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, wires_of
@@ -26,7 +26,7 @@ from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.cpp.objects.manners import Manners
 
 OBJECT = "given_object"
 

@@ -9,20 +9,20 @@ from rosetta_jit.generate.c.functions import Attempt
 from rosetta_jit.generate.c.lanes import Lanes
 from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cleared import offsets_of, slots_of
-from rosetta_jit.generate.cpp.always import directs
-from rosetta_jit.generate.cpp.lists import row_name, viewed
-from rosetta_jit.generate.cpp.lists_within import lists_within
-from rosetta_jit.generate.cpp.messages_within import has_lengths, visited_lanes
-from rosetta_jit.generate.cpp.read_in_place import addressed_lanes, is_local
-from rosetta_jit.generate.cpp.spots import Direct, Listed, container_type
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.encoding.lists_within import lists_within
+from rosetta_jit.generate.cpp.encoding.messages_within import has_lengths, visited_lanes
+from rosetta_jit.generate.cpp.encoding.read_in_place import addressed_lanes, is_local
+from rosetta_jit.generate.cpp.objects.always import directs
+from rosetta_jit.generate.cpp.objects.lists import row_name, viewed
+from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, container_type
+from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row
 from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.language import Parts
-    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.cpp.objects.manners import Manners
 
 HOLDER = "std::declval<const holder &>()"
 

@@ -15,9 +15,9 @@ from string import Template
 from rosetta_jit.generate.c.rows import path_to
 from rosetta_jit.generate.c.varint_loops import rounds_of
 from rosetta_jit.generate.c.within import Within, element_of
-from rosetta_jit.generate.cpp.lists import is_readable, lanes_of, nodes_of, row_name
-from rosetta_jit.generate.cpp.spots import Direct, Listed, ListWithin, Spot
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.objects.lists import is_readable, lanes_of, nodes_of, row_name
+from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, ListWithin, Spot
+from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, kind_of, wires_of
 from rosetta_jit.kernel.nodes import Assign, Block, Copy, Expr, For, Get, Let, Place, Stmt, Var, While

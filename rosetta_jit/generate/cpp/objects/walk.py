@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, Literal
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.cpp.classes import names_of
-from rosetta_jit.generate.cpp.names import member_names
-from rosetta_jit.generate.cpp.spots import ListWithin, Spot
+from rosetta_jit.generate.cpp.objects.classes import names_of
+from rosetta_jit.generate.cpp.objects.names import member_names
+from rosetta_jit.generate.cpp.objects.spots import ListWithin, Spot
 from rosetta_jit.generate.shares import WHOLE, Ways
 from rosetta_jit.model.types import Struct, Union
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.cpp.objects.manners import Manners
     from rosetta_jit.generate.unit import Unit
 
 Direction = Literal["decode", "encode"]

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from rosetta_jit.generate.c.lanes import Given
 from rosetta_jit.generate.cleared import clears
-from rosetta_jit.generate.cpp.always import is_plain, spans
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.objects.always import is_plain, spans
+from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.ir import Kernel

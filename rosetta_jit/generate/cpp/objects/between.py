@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of
-from rosetta_jit.generate.cpp.spots import Spot
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.objects.spots import Spot
+from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.shares import WHOLE, within
 from rosetta_jit.model.layout import Member, Number, Row, Span, Variant, map_entry
 from rosetta_jit.model.types import Array, Bytes, Field, Map, Optional, Ref, String, Struct, Type, Union

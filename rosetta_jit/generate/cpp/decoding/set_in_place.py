@@ -9,14 +9,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.cleared import clears, settled
-from rosetta_jit.generate.cpp.always import numbers
+from rosetta_jit.generate.cpp.objects.always import numbers
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Address, Copy, Fill, Get, HostCall, IsText, Nearest, Place, Stmt
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.cpp.walk import Walk
+    from rosetta_jit.generate.cpp.objects.walk import Walk
 
 VALUE = "$value"
 """What stands for the number in a statement that sets it."""

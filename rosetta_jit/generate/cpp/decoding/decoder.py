@@ -5,20 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.lanes import Lanes, Straight
-from rosetta_jit.generate.cpp.arrays_in_place import arrays_in_place, uncounted
-from rosetta_jit.generate.cpp.lists_in_place import Opened, opened_lists
-from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
-from rosetta_jit.generate.cpp.opened import in_place
-from rosetta_jit.generate.cpp.packed import packed_lists
-from rosetta_jit.generate.cpp.set_in_place import straight_numbers
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.decoding.arrays_in_place import arrays_in_place, uncounted
+from rosetta_jit.generate.cpp.decoding.lists_in_place import Opened, opened_lists
+from rosetta_jit.generate.cpp.decoding.packed import packed_lists
+from rosetta_jit.generate.cpp.decoding.set_in_place import straight_numbers
+from rosetta_jit.generate.cpp.objects.walk import Walk
+from rosetta_jit.generate.cpp.passes.numbers_apart import with_numbers_apart
+from rosetta_jit.generate.cpp.passes.opened import in_place
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.cpp.manners import Manners
-    from rosetta_jit.generate.cpp.messages_in_place import MessagesInPlace
+    from rosetta_jit.generate.cpp.decoding.messages_in_place import MessagesInPlace
+    from rosetta_jit.generate.cpp.objects.manners import Manners
 
 
 OBJECT = "given_object"

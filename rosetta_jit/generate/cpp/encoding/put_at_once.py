@@ -16,15 +16,15 @@ from rosetta_jit.generate.c.lanes import Given, Lanes
 from rosetta_jit.generate.c.scope import Scope
 from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
-from rosetta_jit.generate.cpp.always import is_plain, numbers, spans
-from rosetta_jit.generate.cpp.empty_lists import NOT_EMPTY, of_no_elements
+from rosetta_jit.generate.cpp.encoding.messages_within import descents_of
+from rosetta_jit.generate.cpp.encoding.reading import reader
+from rosetta_jit.generate.cpp.encoding.shown_elements import Shown, shown_elements
 from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
-from rosetta_jit.generate.cpp.measured_first import measured_first
-from rosetta_jit.generate.cpp.messages_within import descents_of
-from rosetta_jit.generate.cpp.numbers_apart import with_numbers_apart
-from rosetta_jit.generate.cpp.reading import reader
-from rosetta_jit.generate.cpp.shown_elements import Shown, shown_elements
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.objects.always import is_plain, numbers, spans
+from rosetta_jit.generate.cpp.objects.walk import Walk
+from rosetta_jit.generate.cpp.passes.empty_lists import NOT_EMPTY, of_no_elements
+from rosetta_jit.generate.cpp.passes.measured_first import measured_first
+from rosetta_jit.generate.cpp.passes.numbers_apart import with_numbers_apart
 from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.roundings import two_roundings
 from rosetta_jit.generate.undamaged import undamaged_kernel
@@ -40,7 +40,7 @@ from rosetta_jit.model.types import Array, Bytes, String
 from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.cpp.manners import Manners
+    from rosetta_jit.generate.cpp.objects.manners import Manners
 
 OBJECT = "given_object"
 FEW_LINES = 60

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of
-from rosetta_jit.generate.cpp.spots import Direct, Spot
+from rosetta_jit.generate.cpp.objects.spots import Direct, Spot
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Bytes, Enum, Ref, String, Struct, Type
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.cpp.walk import Walk
+    from rosetta_jit.generate.cpp.objects.walk import Walk
 
 
 def directs(walk: Walk, at: str) -> Iterator[Direct]:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.generate.cpp.spots import Spot
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.objects.spots import Spot
+from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.descents import Descents, NotNested, descended
 from rosetta_jit.generate.messages_in_turn import visited_in_turn
 from rosetta_jit.generate.undamaged import undamaged_kernel

@@ -8,10 +8,10 @@ from __future__ import annotations
 from string import Template
 
 from rosetta_jit.generate.c.within import Within
-from rosetta_jit.generate.cpp.always import is_plain
-from rosetta_jit.generate.cpp.few_elements import most_elements
-from rosetta_jit.generate.cpp.spots import Spot, container_type
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.objects.always import is_plain
+from rosetta_jit.generate.cpp.objects.spots import Spot, container_type
+from rosetta_jit.generate.cpp.objects.walk import Walk
+from rosetta_jit.generate.cpp.passes.few_elements import most_elements
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Bytes, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass, field, replace

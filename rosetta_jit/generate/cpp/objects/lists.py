@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.generate.c.rows import Struct as RowStruct
 from rosetta_jit.generate.c.rows import members_of, path_to
-from rosetta_jit.generate.cpp.always import spans
-from rosetta_jit.generate.cpp.between import between
-from rosetta_jit.generate.cpp.spots import Direct, Listed, Spot
-from rosetta_jit.generate.cpp.walk import Walk
+from rosetta_jit.generate.cpp.objects.always import spans
+from rosetta_jit.generate.cpp.objects.between import between
+from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, Spot
+from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.unit import Unit, kind_of
 from rosetta_jit.kernel.nodes import Advance, Block, Capacity, Copy, Expr, Get, HostCall, Place, Reserve, Stmt, Used
 from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, subexpressions

@@ -1,0 +1,1 @@
+"""What encoders read of objects without rows, and the encoders that stand in the header."""

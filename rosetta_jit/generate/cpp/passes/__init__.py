@@ -1,0 +1,1 @@
+"""What kernels become for C++ before they are printed: fewer checks, numbers and lists by themselves."""
