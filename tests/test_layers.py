@@ -37,9 +37,10 @@ YARP = {f"frameworks.yarp.{module}" for module in ("bottle_diagnostics", "forms"
 HOLDS = FRAMEWORK | {"runtime.holder", "runtime.holder.objects"}
 LOG_READER = REPORTS | {"logs.base", "logs.limits", "logs.reading", "logs.reading.storage", "logs.reading.walking"}
 TRANSPORT = REPORTS | {"transports"}
-PRINTS = REPORTS | {"model", "kernel", "kernel.passes", "backends", "generate"}
-CPP = PRINTS | {"generate.c", "generate.cpp.objects", "generate.cpp.passes"}
-PYTHON = {"generate.c.lanes", "generate.c.unit_lanes"} | {f"generate.python.{room}" for room in ("passes", "printing", "runtime")}
+PRINTS = REPORTS | {"model", "kernel", "kernel.passes", "backends", "generate", "generate.passes"}
+C = {"generate.c.holder", "generate.c.printing"}
+CPP = PRINTS | C | {"generate.c", "generate.cpp.objects", "generate.cpp.passes"}
+PYTHON = {"generate.c.holder"} | {f"generate.python.{room}" for room in ("passes", "printing", "runtime")}
 ANYTHING = (
     COMPILER
     | API
@@ -185,20 +186,23 @@ MAY_IMPORT = {
     "ray": REPORTS | {"logs"},
     "dask": REPORTS | {"logs"},
     "generate": REPORTS | {"model", "kernel", "kernel.passes", "language"},
-    "generate.c": PRINTS | {"backends.entry"},
+    "generate.passes": REPORTS | {"model", "kernel", "kernel.passes", "generate.unit"},
+    "generate.c": PRINTS | C | {"backends.entry"},
+    "generate.c.holder": PRINTS | {"generate.c.support", "generate.c.words"},
+    "generate.c.printing": PRINTS | {f"generate.c.{each}" for each in ("holder", "state", "support", "texts", "words")},
     "generate.cpp": CPP | {"generate.cpp.decoding", "generate.cpp.encoding", "generate.cpp.header_checks"},
     "generate.cpp.decoding": CPP | {"generate.cpp.header_checks"},
     "generate.cpp.encoding": CPP | {"generate.cpp.header_checks"},
     "generate.cpp.header_checks": CPP,
-    "generate.cpp.objects": PRINTS | {"generate.c"},
-    "generate.cpp.passes": PRINTS | {"generate.c"},
+    "generate.cpp.objects": PRINTS | {"generate.c", "generate.c.holder"},
+    "generate.cpp.passes": PRINTS | {"generate.c.holder", "generate.c.printing"},
     "generate.python": PRINTS | PYTHON | {"generate.python.decoding", "generate.python.encoding"},
     "generate.python.decoding": PRINTS | PYTHON,
     "generate.python.encoding": PRINTS | PYTHON,
     "generate.python.passes": PRINTS,
     "generate.python.printing": PRINTS | PYTHON,
     "generate.python.runtime": set(),
-    "generate.lisp": PRINTS | {"generate.c.lanes", "generate.c.rows", "generate.c.unit_lanes"},
+    "generate.lisp": PRINTS | {"generate.c.holder"},
     "generate.build": PRINTS | {"generate.c", "lowering.rules", "pipeline", "pipeline.request"},
     "transports": TRANSPORT,
     "transports.installed": TRANSPORT,

@@ -7,10 +7,10 @@ from pathlib import PurePath
 
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import MappingError, SchemaError
-from rosetta_jit.generate.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import Language, installed, language_named
 from rosetta_jit.generate.origins import Origin, origins_of
+from rosetta_jit.generate.passes.bounds import bounds_of_type, least, reserved
 from rosetta_jit.generate.provenance import line_of_mapping, line_of_type
 from rosetta_jit.generate.unit import Role, Unit, UserFunction, wire_of
 from rosetta_jit.kernel.ir import Kernel

@@ -7,10 +7,10 @@ from functools import cache
 
 import numpy as np
 
-from rosetta_jit.generate.c.functions import print_kernel
 from rosetta_jit.generate.c.header import STATUSES, header
-from rosetta_jit.generate.c.lanes import Lane, Lanes
-from rosetta_jit.generate.c.rows import Member, Struct
+from rosetta_jit.generate.c.holder.lanes import Lane, Lanes
+from rosetta_jit.generate.c.holder.rows import Member, Struct
+from rosetta_jit.generate.c.printing.functions import print_kernel
 from rosetta_jit.generate.c.source import source
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.passes.alone import alone

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rosetta_jit.generate.c.lanes import Lane
+from rosetta_jit.generate.c.holder.lanes import Lane
 from rosetta_jit.generate.lisp.functions import About, print_kernel
 from rosetta_jit.generate.lisp.lanes import Lanes, lanes_of
 from rosetta_jit.generate.lisp.language import codec

@@ -8,7 +8,7 @@ import pytest
 
 from rosetta_jit.api.options import request_of
 from rosetta_jit.generate.build import generated
-from rosetta_jit.generate.c.decided import decided
+from rosetta_jit.generate.passes.decided import decided
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import compare
 from rosetta_jit.kernel.passes.fold import FALSE, TRUE

@@ -11,7 +11,7 @@ import rosetta_jit as rj
 from rosetta_jit.api.options import request_of, type_request
 from rosetta_jit.errors import SchemaError
 from rosetta_jit.generate.build import generated
-from rosetta_jit.generate.c.lanes import Lane
+from rosetta_jit.generate.c.holder.lanes import Lane
 from rosetta_jit.generate.lisp.lanes import lanes_of
 from rosetta_jit.generate.lisp.language import codec
 from rosetta_jit.generate.lisp.texts import broken, literal

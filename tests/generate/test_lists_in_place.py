@@ -11,10 +11,10 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
-from rosetta_jit.generate.c.lanes import Straight
-from rosetta_jit.generate.c.positions import difference
+from rosetta_jit.generate.c.holder.lanes import Straight
 from rosetta_jit.generate.cpp.language import INCLUDE
 from rosetta_jit.generate.cpp.passes.opened import in_place
+from rosetta_jit.generate.passes.positions import difference
 from rosetta_jit.kernel.ir import Kernel, Site
 from rosetta_jit.kernel.nodes import Assign, Binary, Compare, Const, Expr, Fill, Get, If, Let, Local, Place, Return, SetField, Var
 from rosetta_jit.kernel.walk import statements

@@ -10,7 +10,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import Wishes, generated
-from rosetta_jit.generate.c.within import Within, element_of
+from rosetta_jit.generate.c.holder.within import Within, element_of
 from rosetta_jit.kernel.nodes import Binary, Const, Get, Local, Place
 from tests.generate import cpp
 from tests.generate.cpp import CAREFUL, QUICK

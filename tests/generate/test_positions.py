@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import generated
-from rosetta_jit.generate.c.aligned import aligned, as_printed
-from rosetta_jit.generate.c.positions import NONE, after_binding, after_call, after_require, forget, is_position, joined, said_by
+from rosetta_jit.generate.passes.aligned import aligned, as_printed
+from rosetta_jit.generate.passes.positions import NONE, after_binding, after_call, after_require, forget, is_position, joined, said_by
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.terms import END, add, index
 

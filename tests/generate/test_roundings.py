@@ -11,7 +11,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api.options import request_of
 from rosetta_jit.generate.build import generated
-from rosetta_jit.generate.roundings import TWO_ROUNDINGS
+from rosetta_jit.generate.passes.roundings import TWO_ROUNDINGS
 from tests.generate import cpp, driver
 
 BOTH = ("decode", "encode")

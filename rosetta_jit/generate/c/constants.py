@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace, class_name
-from rosetta_jit.generate.c.literals import as_float, bits_of, number
+from rosetta_jit.generate.c.printing.literals import as_float, bits_of, number
 from rosetta_jit.generate.c.texts import comment, literal
 from rosetta_jit.generate.c.words import C_TYPES, RESERVED
 from rosetta_jit.generate.constants import constants_of, number_of, scalar_of_constant

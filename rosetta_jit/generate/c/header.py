@@ -8,10 +8,10 @@ from string import Template
 from typing import get_args
 
 from rosetta_jit.errors import Kind
-from rosetta_jit.generate.c.accessors import accessors, memory
 from rosetta_jit.generate.c.constants import named_values
-from rosetta_jit.generate.c.lanes import Lanes, row_type
-from rosetta_jit.generate.c.rows import Member, SpanType, Struct
+from rosetta_jit.generate.c.holder.accessors import accessors, memory
+from rosetta_jit.generate.c.holder.lanes import Lanes, row_type
+from rosetta_jit.generate.c.holder.rows import Member, SpanType, Struct
 from rosetta_jit.generate.c.state import state_struct
 from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import C_ROWS, C_TYPES

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.functions import Printed, print_kernel
 from rosetta_jit.generate.c.header import header
-from rosetta_jit.generate.c.lanes import Dialect, Lanes
-from rosetta_jit.generate.c.rows import Struct
+from rosetta_jit.generate.c.holder.lanes import Dialect, Lanes
+from rosetta_jit.generate.c.holder.rows import Struct
+from rosetta_jit.generate.c.holder.unit_lanes import hidden_lanes, own_lanes
+from rosetta_jit.generate.c.printing.functions import Printed, print_kernel
 from rosetta_jit.generate.c.source import source
-from rosetta_jit.generate.c.unit_lanes import hidden_lanes, own_lanes
-from rosetta_jit.generate.cleared import without_clearing
+from rosetta_jit.generate.passes.cleared import without_clearing
 from rosetta_jit.generate.unit import Role, Unit
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.startup.dataclass import dataclass, replace

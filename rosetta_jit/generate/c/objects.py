@@ -9,9 +9,9 @@ from rosetta_jit.backends.entry.any_machine import TargetError, object_for
 from rosetta_jit.backends.printing import Writer
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.functions import Attempt, Printed
-from rosetta_jit.generate.c.lanes import Lanes
+from rosetta_jit.generate.c.holder.lanes import Lanes
 from rosetta_jit.generate.c.language import as_c
+from rosetta_jit.generate.c.printing.functions import Attempt, Printed
 from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.unit import Role, Unit, kind_of
 from rosetta_jit.kernel import state

@@ -8,18 +8,18 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.accessors import clear
 from rosetta_jit.generate.c.header import STATUSES, made
-from rosetta_jit.generate.c.lanes import Lanes
-from rosetta_jit.generate.c.rows import Struct
+from rosetta_jit.generate.c.holder.accessors import clear
+from rosetta_jit.generate.c.holder.lanes import Lanes
+from rosetta_jit.generate.c.holder.rows import Struct
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
-from rosetta_jit.generate.roundings import two_roundings
+from rosetta_jit.generate.passes.roundings import two_roundings
 from rosetta_jit.generate.unit import Purpose, Role, Unit, kind_of, wire_of
 from rosetta_jit.kernel.ir import Kernel, Part, Site
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.functions import Attempt, Printed
+    from rosetta_jit.generate.c.printing.functions import Attempt, Printed
 
 FREESTANDING = """#include <float.h>
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from rosetta_jit.generate.c.expressions import expression
-from rosetta_jit.generate.c.function import Function, lacks
-from rosetta_jit.generate.c.positions import after_binding, after_require
-from rosetta_jit.generate.c.statements import print_block
+from rosetta_jit.generate.c.printing.expressions import expression
+from rosetta_jit.generate.c.printing.function import Function, lacks
+from rosetta_jit.generate.c.printing.statements import print_block
 from rosetta_jit.generate.cpp.passes.checks import IMPLIED
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.positions import after_binding, after_require
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import folded
 

@@ -6,10 +6,9 @@ from pathlib import Path
 
 from rosetta_jit.catalogue import generate as words
 from rosetta_jit.errors import SchemaError
-from rosetta_jit.generate.c.functions import Printed, print_kernel
-from rosetta_jit.generate.c.lanes import Lanes
+from rosetta_jit.generate.c.holder.lanes import Lanes
 from rosetta_jit.generate.c.language import parts_of
-from rosetta_jit.generate.cleared import without_clearing
+from rosetta_jit.generate.c.printing.functions import Printed, print_kernel
 from rosetta_jit.generate.cpp.decoding.at_once import at_once, of_no_elements_at_once
 from rosetta_jit.generate.cpp.decoding.decoder import decoder_of, open_decoder_of
 from rosetta_jit.generate.cpp.decoding.messages_in_place import MessagesInPlace, messages_in_place
@@ -20,7 +19,8 @@ from rosetta_jit.generate.cpp.header import AtOnce, header
 from rosetta_jit.generate.cpp.objects.manners import MANNERS, Manners
 from rosetta_jit.generate.cpp.passes.opened import without_asking, without_counting
 from rosetta_jit.generate.cpp.source import source
-from rosetta_jit.generate.undamaged import SPANS, undamaged_kernel
+from rosetta_jit.generate.passes.cleared import without_clearing
+from rosetta_jit.generate.passes.undamaged import SPANS, undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.model.types import Struct

@@ -9,7 +9,7 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.header import made, struct_text
-from rosetta_jit.generate.c.rows import Struct as RowStruct
+from rosetta_jit.generate.c.holder.rows import Struct as RowStruct
 from rosetta_jit.generate.c.source import NO_ROOM, by_order, part_tables, run, scratch_of, without_unused
 from rosetta_jit.generate.c.support import support
 from rosetta_jit.generate.c.texts import literal
@@ -37,7 +37,7 @@ from rosetta_jit.generate.cpp.objects.between import between
 from rosetta_jit.generate.cpp.objects.lists import row_name, row_struct, taken
 from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, Spot, container_type
 from rosetta_jit.generate.cpp.objects.walk import Walk
-from rosetta_jit.generate.roundings import two_roundings
+from rosetta_jit.generate.passes.roundings import two_roundings
 from rosetta_jit.generate.shares import WHOLE, changed_lanes
 from rosetta_jit.generate.unit import Role, Unit, kind_of, wire_of, wires_of
 from rosetta_jit.kernel.ir import Kernel

@@ -21,7 +21,7 @@ from rosetta_jit.generate.lisp.parts import is_large, names_in, parted
 from rosetta_jit.generate.lisp.statements import BOXED, Function, print_block, registers
 from rosetta_jit.generate.lisp.words import LISP_TYPES, Names, hyphenated
 from rosetta_jit.generate.origins import Origin
-from rosetta_jit.generate.reachable import leaves, reached, read_names
+from rosetta_jit.generate.passes.reachable import leaves, reached, read_names
 from rosetta_jit.generate.shares import changed_lanes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.ir import Kernel, Routine, Site

@@ -12,12 +12,12 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.rows import path_to
+from rosetta_jit.generate.c.holder.rows import path_to
 from rosetta_jit.generate.lisp.words import Names, codec_slots, constants, hyphenated
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c import lanes as c
+    from rosetta_jit.generate.c.holder import lanes as c
 
 OWN_WORDS = frozenset({"codec", "data", "end", "attempt"})
 """What the functions call their parameters."""

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from string import Template
 
-from rosetta_jit.generate.c.unit_lanes import named_lanes
+from rosetta_jit.generate.c.holder.unit_lanes import named_lanes
 from rosetta_jit.generate.lisp.classes import classes_of, definitions, function_symbols, wire_symbols
 from rosetta_jit.generate.lisp.functions import About, Printed, computes_with_floats, print_kernel
 from rosetta_jit.generate.lisp.lanes import Lanes, lanes_of

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.c.lanes import Lanes
-from rosetta_jit.generate.c.unit_lanes import named_lanes
+from rosetta_jit.generate.c.holder.lanes import Lanes
+from rosetta_jit.generate.c.holder.unit_lanes import named_lanes
 from rosetta_jit.generate.python.decoding.decoder import print_decoder, taken_lanes
 from rosetta_jit.generate.python.decoding.empty_messages import print_empty_message
 from rosetta_jit.generate.python.decoding.late_objects import Late, late_objects

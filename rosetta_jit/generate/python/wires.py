@@ -17,7 +17,7 @@ from rosetta_jit.model.layout import Row
 from rosetta_jit.model.types import Optional, Struct
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
     from rosetta_jit.generate.python.decoding.making import Make
     from rosetta_jit.generate.python.printing.printed import Attempt
 

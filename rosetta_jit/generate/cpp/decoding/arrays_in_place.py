@@ -6,10 +6,10 @@ One of a fixed length is there; another one gets its length when the decoder tak
 
 from __future__ import annotations
 
-from rosetta_jit.generate.c.lanes import Given
-from rosetta_jit.generate.cleared import clears
+from rosetta_jit.generate.c.holder.lanes import Given
 from rosetta_jit.generate.cpp.objects.always import is_plain, spans
 from rosetta_jit.generate.cpp.objects.walk import Walk
+from rosetta_jit.generate.passes.cleared import clears
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.ir import Kernel

@@ -8,18 +8,18 @@ set nothing count as something wrong.
 from __future__ import annotations
 
 from rosetta_jit.backends.printing import Namespace
-from rosetta_jit.generate.c.function import Function
-from rosetta_jit.generate.c.lanes import Lanes
-from rosetta_jit.generate.c.scope import Scope
-from rosetta_jit.generate.c.statements import print_block
+from rosetta_jit.generate.c.holder.lanes import Lanes
+from rosetta_jit.generate.c.printing.function import Function
+from rosetta_jit.generate.c.printing.scope import Scope
+from rosetta_jit.generate.c.printing.statements import print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
 from rosetta_jit.generate.cpp.passes.checks import fewer
 from rosetta_jit.generate.cpp.passes.empty_lists import lanes_of_empty_lists, lanes_of_nothing, of_empty_lists, of_nothing
 from rosetta_jit.generate.cpp.passes.few_elements import lanes_of_few_elements, of_few_elements
 from rosetta_jit.generate.cpp.passes.opened import without_asking, without_counting
-from rosetta_jit.generate.reachable import read_names
-from rosetta_jit.generate.roundings import two_roundings
+from rosetta_jit.generate.passes.reachable import read_names
+from rosetta_jit.generate.passes.roundings import two_roundings
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.passes.fold import FALSE, folded

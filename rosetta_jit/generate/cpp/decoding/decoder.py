@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.lanes import Lanes, Straight
+from rosetta_jit.generate.c.holder.lanes import Lanes, Straight
 from rosetta_jit.generate.cpp.decoding.arrays_in_place import arrays_in_place, uncounted
 from rosetta_jit.generate.cpp.decoding.lists_in_place import Opened, opened_lists
 from rosetta_jit.generate.cpp.decoding.packed import packed_lists

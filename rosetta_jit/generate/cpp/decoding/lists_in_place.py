@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.generate.c.lanes import Straight
+from rosetta_jit.generate.c.holder.lanes import Straight
 from rosetta_jit.generate.cpp.objects.always import is_plain
 from rosetta_jit.generate.cpp.objects.lists import taken
 from rosetta_jit.generate.cpp.objects.spots import Spot, container_type

@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.lanes import Lanes, Straight
-from rosetta_jit.generate.c.unit_lanes import own_lanes
+from rosetta_jit.generate.c.holder.lanes import Lanes, Straight
+from rosetta_jit.generate.c.holder.unit_lanes import own_lanes
 from rosetta_jit.generate.cpp.decoding.lists_in_place import Opened, messages_of, row_in_place
 from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.cpp.passes.numbers_apart import with_numbers_apart
 from rosetta_jit.generate.cpp.passes.numbers_kept import with_numbers_kept
 from rosetta_jit.generate.cpp.passes.opened import in_place, without_asking
-from rosetta_jit.generate.descents import Descents, NotNested, Visit, descended
-from rosetta_jit.generate.undamaged import undamaged_kernel
+from rosetta_jit.generate.passes.descents import Descents, NotNested, Visit, descended
+from rosetta_jit.generate.passes.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Advance, Block, Call, Const, Let, Local, Reserve, SetField, Stmt, Used

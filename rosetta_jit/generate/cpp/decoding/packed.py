@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from rosetta_jit.generate.c.lanes import Packed
+from rosetta_jit.generate.c.holder.lanes import Packed
 from rosetta_jit.generate.c.words import C_ROWS
 from rosetta_jit.generate.cpp.decoding.lists_in_place import Opened
 from rosetta_jit.generate.cpp.objects.lists import NumberOf, numbers_of

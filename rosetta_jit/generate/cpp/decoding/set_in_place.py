@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.cleared import clears, settled
 from rosetta_jit.generate.cpp.objects.always import numbers
+from rosetta_jit.generate.passes.cleared import clears, settled
 from rosetta_jit.generate.unit import wires_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Address, Copy, Fill, Get, HostCall, IsText, Nearest, Place, Stmt

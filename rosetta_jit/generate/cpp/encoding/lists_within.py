@@ -12,13 +12,13 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from string import Template
 
-from rosetta_jit.generate.c.rows import path_to
-from rosetta_jit.generate.c.varint_loops import rounds_of
-from rosetta_jit.generate.c.within import Within, element_of
+from rosetta_jit.generate.c.holder.rows import path_to
+from rosetta_jit.generate.c.holder.within import Within, element_of
+from rosetta_jit.generate.c.printing.varint_loops import rounds_of
 from rosetta_jit.generate.cpp.objects.lists import is_readable, lanes_of, nodes_of, row_name
 from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, ListWithin, Spot
 from rosetta_jit.generate.cpp.objects.walk import Walk
-from rosetta_jit.generate.undamaged import undamaged_kernel
+from rosetta_jit.generate.passes.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, kind_of, wires_of
 from rosetta_jit.kernel.nodes import Assign, Block, Copy, Expr, For, Get, Let, Place, Stmt, Var, While
 from rosetta_jit.model.layout import Number, Row, Slot, Span

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 
 from rosetta_jit.generate.cpp.objects.spots import Spot
 from rosetta_jit.generate.cpp.objects.walk import Walk
-from rosetta_jit.generate.descents import Descents, NotNested, descended
-from rosetta_jit.generate.messages_in_turn import visited_in_turn
-from rosetta_jit.generate.undamaged import undamaged_kernel
+from rosetta_jit.generate.passes.descents import Descents, NotNested, descended
+from rosetta_jit.generate.passes.messages_in_turn import visited_in_turn
+from rosetta_jit.generate.passes.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Role, Unit, kind_of
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.model.layout import Layout, Row, Slot, Span, Variant, map_entry

@@ -10,11 +10,10 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace
-from rosetta_jit.generate.c.decided import decided
-from rosetta_jit.generate.c.function import Function
-from rosetta_jit.generate.c.lanes import Given, Lanes
-from rosetta_jit.generate.c.scope import Scope
-from rosetta_jit.generate.c.statements import print_block
+from rosetta_jit.generate.c.holder.lanes import Given, Lanes
+from rosetta_jit.generate.c.printing.function import Function
+from rosetta_jit.generate.c.printing.scope import Scope
+from rosetta_jit.generate.c.printing.statements import print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.encoding.messages_within import descents_of
 from rosetta_jit.generate.cpp.encoding.reading import reader
@@ -25,9 +24,10 @@ from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.cpp.passes.empty_lists import NOT_EMPTY, of_no_elements
 from rosetta_jit.generate.cpp.passes.measured_first import measured_first
 from rosetta_jit.generate.cpp.passes.numbers_apart import with_numbers_apart
-from rosetta_jit.generate.reachable import reached, read_names
-from rosetta_jit.generate.roundings import two_roundings
-from rosetta_jit.generate.undamaged import undamaged_kernel
+from rosetta_jit.generate.passes.decided import decided
+from rosetta_jit.generate.passes.reachable import reached, read_names
+from rosetta_jit.generate.passes.roundings import two_roundings
+from rosetta_jit.generate.passes.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.nodes import Block, Expr

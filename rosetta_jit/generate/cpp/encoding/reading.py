@@ -5,10 +5,9 @@ from __future__ import annotations
 from string import Template
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.functions import Attempt
-from rosetta_jit.generate.c.lanes import Lanes
+from rosetta_jit.generate.c.holder.lanes import Lanes
+from rosetta_jit.generate.c.printing.functions import Attempt
 from rosetta_jit.generate.c.source import run
-from rosetta_jit.generate.cleared import offsets_of, slots_of
 from rosetta_jit.generate.cpp.encoding.lists_within import lists_within
 from rosetta_jit.generate.cpp.encoding.messages_within import has_lengths, visited_lanes
 from rosetta_jit.generate.cpp.encoding.read_in_place import addressed_lanes, is_local
@@ -16,6 +15,7 @@ from rosetta_jit.generate.cpp.objects.always import directs
 from rosetta_jit.generate.cpp.objects.lists import row_name, viewed
 from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, container_type
 from rosetta_jit.generate.cpp.objects.walk import Walk
+from rosetta_jit.generate.passes.cleared import offsets_of, slots_of
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.model.layout import Row
 from rosetta_jit.startup.dataclass import replace

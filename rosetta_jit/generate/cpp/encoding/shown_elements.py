@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from string import Template
 
-from rosetta_jit.generate.c.within import Within
+from rosetta_jit.generate.c.holder.within import Within
 from rosetta_jit.generate.cpp.objects.always import is_plain
 from rosetta_jit.generate.cpp.objects.spots import Spot, container_type
 from rosetta_jit.generate.cpp.objects.walk import Walk

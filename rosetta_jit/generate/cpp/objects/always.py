@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.rows import Struct as RowStruct
-from rosetta_jit.generate.c.rows import members_of
+from rosetta_jit.generate.c.holder.rows import Struct as RowStruct
+from rosetta_jit.generate.c.holder.rows import members_of
 from rosetta_jit.generate.cpp.objects.spots import Direct, Spot
 from rosetta_jit.model.layout import Number, Row, Slot, Span
 from rosetta_jit.model.types import Array, Bytes, Enum, Ref, String, Struct, Type

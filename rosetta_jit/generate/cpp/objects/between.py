@@ -10,8 +10,8 @@ the lane shows the elements of their container.
 
 from __future__ import annotations
 
-from rosetta_jit.generate.c.rows import Struct as RowStruct
-from rosetta_jit.generate.c.rows import members_of
+from rosetta_jit.generate.c.holder.rows import Struct as RowStruct
+from rosetta_jit.generate.c.holder.rows import members_of
 from rosetta_jit.generate.cpp.objects.spots import Spot
 from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.shares import WHOLE, within

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.c.rows import Struct as RowStruct
-from rosetta_jit.generate.c.rows import members_of, path_to
+from rosetta_jit.generate.c.holder.rows import Struct as RowStruct
+from rosetta_jit.generate.c.holder.rows import members_of, path_to
 from rosetta_jit.generate.cpp.objects.always import spans
 from rosetta_jit.generate.cpp.objects.between import between
 from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, Spot
@@ -25,7 +25,7 @@ from rosetta_jit.model.types import Array, Bytes, String, Struct, Type
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 
 def viewed(walk: Walk, at: str) -> list[Listed]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.generate.c.within import Within
+from rosetta_jit.generate.c.holder.within import Within
 from rosetta_jit.model.types import Type
 from rosetta_jit.startup.dataclass import dataclass
 

@@ -22,7 +22,7 @@ from rosetta_jit.model.types import Struct, Union
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
     from rosetta_jit.generate.cpp.objects.manners import Manners
     from rosetta_jit.generate.unit import Unit
 

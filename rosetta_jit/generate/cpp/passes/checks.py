@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from rosetta_jit.generate.c.positions import NONE, after_binding, after_require, difference, is_position
 from rosetta_jit.generate.cpp.passes.empty_lists import with_values
+from rosetta_jit.generate.passes.positions import NONE, after_binding, after_require, difference, is_position
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS
 from rosetta_jit.kernel.nodes import Block, Expr, Scalar, Stmt

@@ -17,7 +17,7 @@ from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.startup.dataclass import replace
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 NONE = index(0)
 NOT_EMPTY = nodes.Failure(0, NONE)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.generate.c.lanes import Given, Lanes
+from rosetta_jit.generate.c.holder.lanes import Given, Lanes
 from rosetta_jit.generate.cpp.passes.empty_lists import NOT_EMPTY
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.nodes import Block, Stmt

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
-from rosetta_jit.generate.c.positions import bound_in, difference
+from rosetta_jit.generate.passes.positions import bound_in, difference
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.nodes import Block, Expr, Stmt
 from rosetta_jit.kernel.rewrite import locals_in, substituted, with_blocks

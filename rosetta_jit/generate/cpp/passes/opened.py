@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import TypeGuard
 
-from rosetta_jit.generate.c.aligned import as_printed
-from rosetta_jit.generate.c.lanes import Straight
-from rosetta_jit.generate.c.positions import bound_in, difference
-from rosetta_jit.generate.c.straight import size_left
-from rosetta_jit.generate.cleared import settled
-from rosetta_jit.generate.reachable import read_names
+from rosetta_jit.generate.c.holder.lanes import Straight
+from rosetta_jit.generate.c.printing.straight import size_left
+from rosetta_jit.generate.passes.aligned import as_printed
+from rosetta_jit.generate.passes.cleared import settled
+from rosetta_jit.generate.passes.positions import bound_in, difference
+from rosetta_jit.generate.passes.reachable import read_names
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import (
     Address,

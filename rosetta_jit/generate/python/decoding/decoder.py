@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from rosetta_jit.generate.c.lanes import Lanes
+from rosetta_jit.generate.c.holder.lanes import Lanes
+from rosetta_jit.generate.passes.undamaged import undamaged_kernel
 from rosetta_jit.generate.python.decoding.late_objects import late_rows
 from rosetta_jit.generate.python.decoding.making import Make, arrays_of
 from rosetta_jit.generate.python.decoding.making_late_rows import MakeLate
@@ -15,7 +16,6 @@ from rosetta_jit.generate.python.printing.functions import is_flat, print_kernel
 from rosetta_jit.generate.python.printing.late_lists import late_lists
 from rosetta_jit.generate.python.printing.printed import Attempt, Objects
 from rosetta_jit.generate.python.printing.scope import Scope
-from rosetta_jit.generate.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Advance, Block

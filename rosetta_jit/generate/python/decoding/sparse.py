@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.generate.cleared import slots_of
+from rosetta_jit.generate.passes.cleared import slots_of
 from rosetta_jit.generate.python.decoding.making import Make
 from rosetta_jit.generate.python.passes.direct import Direct
 from rosetta_jit.generate.python.passes.late_fields import says_presence

@@ -16,7 +16,7 @@ from rosetta_jit.model.types import Array, Bytes, Map, Optional, Ref, String, St
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 MOST_AT_ONCE = 40
 """Numbers of an array of a fixed length that are packed by a function of its own."""

@@ -6,7 +6,10 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.descents import Descents, NotNested, descended
+from rosetta_jit.generate.passes.descents import Descents, NotNested, descended
+from rosetta_jit.generate.passes.reachable import reached, read_names
+from rosetta_jit.generate.passes.undamaged import undamaged
+from rosetta_jit.generate.passes.work_lists import RowBody
 from rosetta_jit.generate.python.encoding.object_rows import ObjectScope
 from rosetta_jit.generate.python.encoding.parts import Parts
 from rosetta_jit.generate.python.encoding.recursive_rows import row_function, rows_in_parts
@@ -18,10 +21,7 @@ from rosetta_jit.generate.python.passes.positions import NotInParts, Sum, withou
 from rosetta_jit.generate.python.passes.presence import is_behind_message, without_lengths
 from rosetta_jit.generate.python.printing.functions import words_of
 from rosetta_jit.generate.python.printing.printed import Function, Objects
-from rosetta_jit.generate.reachable import reached, read_names
-from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Unit
-from rosetta_jit.generate.work_lists import RowBody
 from rosetta_jit.kernel.ir import Kernel, Routine
 from rosetta_jit.kernel.nodes import Block, Expect, Return
 from rosetta_jit.kernel.terms import index
@@ -30,7 +30,7 @@ from rosetta_jit.model.types import Ref
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 
 KNOWN = {"write_varint": "_varint"}

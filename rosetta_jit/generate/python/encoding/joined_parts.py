@@ -5,8 +5,8 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.cleared import slots_of
 from rosetta_jit.generate.python.encoding.object_rows import Binder, Listed, ObjectScope
 from rosetta_jit.generate.python.encoding.packed import ANY, Part, part_text, starred, with_numbers
 from rosetta_jit.generate.python.passes.positions import NotInParts, Positions, Sum

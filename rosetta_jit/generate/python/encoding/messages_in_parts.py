@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rosetta_jit.generate.descents import Visit
+from rosetta_jit.generate.passes.descents import Visit
 from rosetta_jit.generate.python.encoding.joined_parts import Written
 from rosetta_jit.generate.python.encoding.object_rows import ObjectScope
 from rosetta_jit.generate.python.encoding.recursive_rows import row_function

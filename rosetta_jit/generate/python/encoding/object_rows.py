@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.cleared import slots_of
 from rosetta_jit.generate.python.passes.positions import NotInParts
 from rosetta_jit.generate.python.printing.classes import member_names
 from rosetta_jit.generate.python.printing.conversions import within

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.work_lists import is_hidden
 from rosetta_jit.generate.python.encoding.loops_in_parts import Loops
 from rosetta_jit.generate.python.encoding.object_rows import Asked, Listed, Maybe, ObjectScope
 from rosetta_jit.generate.python.encoding.packed import Part
@@ -26,7 +27,6 @@ from rosetta_jit.generate.python.printing.late_lists import LACKS, runs_of_lists
 from rosetta_jit.generate.python.printing.printed import Function
 from rosetta_jit.generate.python.printing.statements import print_statement
 from rosetta_jit.generate.unit import Unit
-from rosetta_jit.generate.work_lists import is_hidden
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import index

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.descents import NotNested
+from rosetta_jit.generate.passes.descents import NotNested
+from rosetta_jit.generate.passes.work_lists import RowBody, without_work_list
 from rosetta_jit.generate.python.passes.positions import NotInParts
-from rosetta_jit.generate.work_lists import RowBody, without_work_list
 from rosetta_jit.kernel.nodes import Block
 from rosetta_jit.model.layout import Layout
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 
 def row_function(lanes: Lanes, lane: int) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosetta_jit.generate.descents import Visit
+from rosetta_jit.generate.passes.descents import Visit
 from rosetta_jit.generate.python.passes.late_fields import LateField
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in

@@ -13,7 +13,7 @@ from collections.abc import Collection
 from itertools import accumulate
 from typing import cast
 
-from rosetta_jit.generate.cleared import offsets_of, slots_of
+from rosetta_jit.generate.passes.cleared import offsets_of, slots_of
 from rosetta_jit.generate.python.passes.bools import bools_read
 from rosetta_jit.generate.python.passes.counted import counted
 from rosetta_jit.generate.python.passes.direct import Direct

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rosetta_jit.generate.cleared import slots_of
+from rosetta_jit.generate.passes.cleared import slots_of
 from rosetta_jit.model.layout import Layout, Number, Row, Slot, Span, Variant
 
 

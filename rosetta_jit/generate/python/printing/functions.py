@@ -8,10 +8,12 @@ from collections.abc import Callable, Sequence, Set
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.cleared import settled
-from rosetta_jit.generate.descents import Descents, NotNested, descended
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.cleared import settled
+from rosetta_jit.generate.passes.descents import Descents, NotNested, descended
+from rosetta_jit.generate.passes.reachable import reached, read_names
+from rosetta_jit.generate.passes.undamaged import undamaged
 from rosetta_jit.generate.python.passes.bools import with_bytes
 from rosetta_jit.generate.python.passes.constants import with_constants
 from rosetta_jit.generate.python.passes.empty_spans import without_empty_spans
@@ -31,16 +33,14 @@ from rosetta_jit.generate.python.printing.scope import CODES, Scope, flat_name, 
 from rosetta_jit.generate.python.printing.statements import print_block
 from rosetta_jit.generate.python.printing.unasked import unasked_words, without_words
 from rosetta_jit.generate.python.printing.visiting import OF_READERS, counts_of_rows, print_readers, with_copy
-from rosetta_jit.generate.reachable import reached, read_names
 from rosetta_jit.generate.shares import moved_lanes
-from rosetta_jit.generate.undamaged import undamaged
 from rosetta_jit.generate.unit import Role, kind_of
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 
 NONE = frozenset[str]()

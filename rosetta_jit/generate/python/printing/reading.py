@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import groupby
 
-from rosetta_jit.generate.cleared import slots_of
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.cleared import slots_of
 from rosetta_jit.generate.python.passes.nested_arrays import MANY
 from rosetta_jit.generate.python.printing.expressions import expression, slice_of
 from rosetta_jit.generate.python.printing.scope import CODES, Scope

@@ -12,7 +12,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import joined
-from rosetta_jit.generate.descents import Visit
+from rosetta_jit.generate.passes.descents import Visit
 from rosetta_jit.generate.python.passes.direct import Direct
 from rosetta_jit.generate.python.passes.local_names import Locals
 from rosetta_jit.generate.python.printing.classes import NUMPY
@@ -23,7 +23,7 @@ from rosetta_jit.model.layout import Span
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 CODES = {
     "bool": "B",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.descents import Visit
 from rosetta_jit.generate.python.passes.bools import Bools, Flags, bools_read, with_flags
 from rosetta_jit.generate.python.passes.groups import bounded, grouped, scalar_of, turned, without_sign
 from rosetta_jit.generate.python.passes.mentions import assigned

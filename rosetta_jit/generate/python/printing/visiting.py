@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.descents import Descents, NotNested
+from rosetta_jit.generate.passes.descents import Descents, NotNested
+from rosetta_jit.generate.passes.reachable import read_names
 from rosetta_jit.generate.python.passes.bools import with_bytes
 from rosetta_jit.generate.python.passes.borrowed import borrowed_block
 from rosetta_jit.generate.python.passes.groups import not_negative
@@ -20,7 +21,6 @@ from rosetta_jit.generate.python.passes.sums import ends_first, with_locals
 from rosetta_jit.generate.python.printing.printed import Function
 from rosetta_jit.generate.python.printing.scope import Scope
 from rosetta_jit.generate.python.printing.statements import COPY, print_block
-from rosetta_jit.generate.reachable import read_names
 from rosetta_jit.kernel import nodes
 
 OF_READERS = frozenset(("left", "element"))

@@ -12,7 +12,7 @@ Where there is one such lane, nothing is switched.
 
 from __future__ import annotations
 
-from rosetta_jit.generate.descents import NotNested
+from rosetta_jit.generate.passes.descents import NotNested
 from rosetta_jit.kernel.nodes import Binary, Block, Compare, Expect, Expr, Get, Let, Local, Place, Return, SetField, Stmt, Switch, While
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import index

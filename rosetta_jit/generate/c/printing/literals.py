@@ -11,7 +11,7 @@ from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED, to_bytes
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 
 def constant(scope: Scope, type_: nodes.Scalar, value: float, *, wide: bool = False) -> str:

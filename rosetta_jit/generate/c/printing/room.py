@@ -5,13 +5,13 @@ from __future__ import annotations
 from string import Template
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.printing.expressions import expression
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.kernel import nodes
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.holder.lanes import Lanes
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 
 def rows_of(scope: Scope, stmt: nodes.Reserve | nodes.Advance) -> list[str]:

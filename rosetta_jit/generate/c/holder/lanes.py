@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
-from rosetta_jit.generate.c.rows import Element, SpanType, Struct, path_to
-from rosetta_jit.generate.c.within import Within
+from rosetta_jit.generate.c.holder.rows import Element, SpanType, Struct, path_to
+from rosetta_jit.generate.c.holder.within import Within
 from rosetta_jit.generate.c.words import C_ROWS, RESERVED
 from rosetta_jit.kernel.nodes import Expr, For
 from rosetta_jit.startup.dataclass import dataclass, field

@@ -13,23 +13,23 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace, Writer, counted_lanes
-from rosetta_jit.generate.c.aligned import as_printed
-from rosetta_jit.generate.c.decided import decided
-from rosetta_jit.generate.c.expressions import expression
-from rosetta_jit.generate.c.function import Callable, Function
-from rosetta_jit.generate.c.heads import declared, head
-from rosetta_jit.generate.c.positions import is_position, said_by
-from rosetta_jit.generate.c.scope import Scope, register_name
+from rosetta_jit.generate.c.printing.expressions import expression
+from rosetta_jit.generate.c.printing.function import Callable, Function
+from rosetta_jit.generate.c.printing.heads import declared, head
+from rosetta_jit.generate.c.printing.scope import Scope, register_name
+from rosetta_jit.generate.c.printing.statements import print_block
+from rosetta_jit.generate.c.printing.varint_loops import called
+from rosetta_jit.generate.c.printing.visited import print_visited, starts_of
 from rosetta_jit.generate.c.state import register_word
-from rosetta_jit.generate.c.statements import print_block
 from rosetta_jit.generate.c.support import function_names
-from rosetta_jit.generate.c.varint_loops import called
-from rosetta_jit.generate.c.visited import print_visited, starts_of
 from rosetta_jit.generate.c.words import C_TYPES
-from rosetta_jit.generate.descents import Descents
 from rosetta_jit.generate.origins import Origin
 from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.reachable import leaves, reached, read_names
+from rosetta_jit.generate.passes.aligned import as_printed
+from rosetta_jit.generate.passes.decided import decided
+from rosetta_jit.generate.passes.descents import Descents
+from rosetta_jit.generate.passes.positions import is_position, said_by
+from rosetta_jit.generate.passes.reachable import leaves, reached, read_names
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel.ir import Kernel, Routine
 from rosetta_jit.kernel.nodes import Advance, Block, Call, Direction, For, While
@@ -37,7 +37,7 @@ from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass, replace
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 SHARED = ("holder", "given_row", "given_object", "bytes", "end", "failure")
 """The parameters that all functions of a kernel may have, in order."""

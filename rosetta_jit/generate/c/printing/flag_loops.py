@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.expressions import expression, list_within
+from rosetta_jit.generate.c.printing.expressions import expression, list_within
 from rosetta_jit.kernel.nodes import Binary, Compare, Const, Convert, Expect, Expr, For, Get, Let, Load, Local, Place, SetField, Store
 from rosetta_jit.kernel.passes.fold import folded
 from rosetta_jit.kernel.rewrite import locals_in, substituted
@@ -16,7 +16,7 @@ from rosetta_jit.kernel.terms import index
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import count
 
 from rosetta_jit.backends.printing import Namespace, joined
-from rosetta_jit.generate.c.accessors import words_of
-from rosetta_jit.generate.c.lanes import OWN_WORDS, Lane, Lanes
-from rosetta_jit.generate.c.rows import Structs, elements_of, paths_of
+from rosetta_jit.generate.c.holder.accessors import words_of
+from rosetta_jit.generate.c.holder.lanes import OWN_WORDS, Lane, Lanes
+from rosetta_jit.generate.c.holder.rows import Structs, elements_of, paths_of
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.unit import Unit

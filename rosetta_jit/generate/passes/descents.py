@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rosetta_jit.generate.reachable import read_names
+from rosetta_jit.generate.passes.reachable import read_names
 from rosetta_jit.kernel.nodes import (
     Advance,
     Assign,

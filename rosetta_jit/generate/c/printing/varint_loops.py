@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.printing.expressions import expression
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.kernel.ir import Kernel
@@ -45,7 +45,7 @@ from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 DETAIL = "rosetta_jit::detail"
 REPLACED = frozenset({"varint_size", "read_eight"})

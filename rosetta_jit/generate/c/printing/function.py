@@ -10,20 +10,20 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.c.expressions import expression
-from rosetta_jit.generate.c.positions import NONE, Positions, is_position
-from rosetta_jit.generate.c.room import moved
+from rosetta_jit.generate.c.printing.expressions import expression
+from rosetta_jit.generate.c.printing.room import moved
 from rosetta_jit.generate.c.texts import comment
-from rosetta_jit.generate.descents import Visit
 from rosetta_jit.generate.origins import Origin, described
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.descents import Visit
+from rosetta_jit.generate.passes.positions import NONE, Positions, is_position
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import END, add
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.expressions import expression
-from rosetta_jit.generate.c.function import Function, fail, fail_if, failed
-from rosetta_jit.generate.c.room import moved
-from rosetta_jit.generate.c.varint_loops import REPLACED, replaced, sooner
+from rosetta_jit.generate.c.printing.expressions import expression
+from rosetta_jit.generate.c.printing.function import Function, fail, fail_if, failed
+from rosetta_jit.generate.c.printing.room import moved
+from rosetta_jit.generate.c.printing.varint_loops import REPLACED, replaced, sooner
 from rosetta_jit.generate.c.words import C_TYPES
-from rosetta_jit.generate.descents import Visit
-from rosetta_jit.generate.messages_in_turn import CLOSED, OPENED
 from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.descents import Visit
+from rosetta_jit.generate.passes.messages_in_turn import CLOSED, OPENED
 from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import folded
 from rosetta_jit.kernel.terms import END, add
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 SHARED_BY_VISITS: dict[Role, tuple[str, ...]] = {
     "borrow": ("bytes", "end", "failure"),

@@ -9,12 +9,20 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.generate.c.aligned import aligned
-from rosetta_jit.generate.c.calls import positions_found, print_call, print_host_call
-from rosetta_jit.generate.c.expressions import expression, list_within, location, store, written
-from rosetta_jit.generate.c.flag_loops import flags_done, flags_of
-from rosetta_jit.generate.c.function import Function, fail, fail_if, lacks
-from rosetta_jit.generate.c.positions import (
+from rosetta_jit.generate.c.printing.calls import positions_found, print_call, print_host_call
+from rosetta_jit.generate.c.printing.expressions import expression, list_within, location, store, written
+from rosetta_jit.generate.c.printing.flag_loops import flags_done, flags_of
+from rosetta_jit.generate.c.printing.function import Function, fail, fail_if, lacks
+from rosetta_jit.generate.c.printing.room import rows_of
+from rosetta_jit.generate.c.printing.straight import statement as straight_statement
+from rosetta_jit.generate.c.printing.varint_loops import Sized, rounds_done, rounds_of
+from rosetta_jit.generate.c.state import register_word
+from rosetta_jit.generate.c.texts import comment
+from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.origins import origin_of
+from rosetta_jit.generate.parentheses import bare
+from rosetta_jit.generate.passes.aligned import aligned
+from rosetta_jit.generate.passes.positions import (
     NONE,
     Positions,
     after_binding,
@@ -25,21 +33,13 @@ from rosetta_jit.generate.c.positions import (
     joined,
     said_by,
 )
-from rosetta_jit.generate.c.room import rows_of
-from rosetta_jit.generate.c.state import register_word
-from rosetta_jit.generate.c.straight import statement as straight_statement
-from rosetta_jit.generate.c.texts import comment
-from rosetta_jit.generate.c.varint_loops import Sized, rounds_done, rounds_of
-from rosetta_jit.generate.c.words import C_TYPES
-from rosetta_jit.generate.origins import origin_of
-from rosetta_jit.generate.parentheses import bare
-from rosetta_jit.generate.reachable import leaves
+from rosetta_jit.generate.passes.reachable import leaves
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.passes.fold import FALSE, folded
 from rosetta_jit.kernel.terms import type_of
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 
 def print_block(function: Function, block: nodes.Block) -> Positions:

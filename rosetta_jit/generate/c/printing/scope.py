@@ -9,7 +9,7 @@ from rosetta_jit.kernel.nodes import Expr, Scalar
 from rosetta_jit.startup.dataclass import dataclass, field
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
+    from rosetta_jit.generate.c.holder.lanes import Lanes
 
 
 @dataclass(slots=True)

@@ -5,7 +5,7 @@ The index of one of its rows is therefore that address plus the number of an ele
 
 from __future__ import annotations
 
-from rosetta_jit.generate.c.positions import difference
+from rosetta_jit.generate.passes.positions import difference
 from rosetta_jit.kernel.nodes import Binary, Expr, Get, Local, Place
 from rosetta_jit.kernel.rewrite import locals_in
 from rosetta_jit.kernel.terms import index

@@ -12,9 +12,9 @@ length has as many bytes then as others of its kind had, which a number says, an
 
 from __future__ import annotations
 
-from rosetta_jit.generate.descents import Descents, NotNested, Visit, placed
-from rosetta_jit.generate.undamaged import OWN_ROWS, undamaged
-from rosetta_jit.generate.work_lists import is_hidden, measured_rows, without_work_list
+from rosetta_jit.generate.passes.descents import Descents, NotNested, Visit, placed
+from rosetta_jit.generate.passes.undamaged import OWN_ROWS, undamaged
+from rosetta_jit.generate.passes.work_lists import is_hidden, measured_rows, without_work_list
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import (
     Assign,

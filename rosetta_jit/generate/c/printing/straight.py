@@ -5,12 +5,12 @@ from __future__ import annotations
 from string import Template
 from typing import TYPE_CHECKING
 
-from rosetta_jit.generate.c.expressions import expression
+from rosetta_jit.generate.c.printing.expressions import expression
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.kernel.nodes import Binary, Const, Expr, Place
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 
 def statement(scope: Scope, place: Place, value: Expr) -> str | None:

@@ -5,7 +5,7 @@ Each text of a list begins where the one before ends, so that a processor waits 
 
 from __future__ import annotations
 
-from rosetta_jit.generate.c.positions import bound_in
+from rosetta_jit.generate.passes.positions import bound_in
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.rewrite import locals_in, with_blocks
 from rosetta_jit.kernel.terms import add, index

@@ -11,15 +11,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.c.aligned import as_printed
-from rosetta_jit.generate.c.calls import shared_by_visits, visiting
-from rosetta_jit.generate.c.decided import decided
-from rosetta_jit.generate.c.function import Function
-from rosetta_jit.generate.c.heads import declared, head
-from rosetta_jit.generate.c.positions import said_by
-from rosetta_jit.generate.c.statements import print_block
-from rosetta_jit.generate.descents import Descents, Visit
-from rosetta_jit.generate.reachable import reached, read_names
+from rosetta_jit.generate.c.printing.calls import shared_by_visits, visiting
+from rosetta_jit.generate.c.printing.function import Function
+from rosetta_jit.generate.c.printing.heads import declared, head
+from rosetta_jit.generate.c.printing.statements import print_block
+from rosetta_jit.generate.passes.aligned import as_printed
+from rosetta_jit.generate.passes.decided import decided
+from rosetta_jit.generate.passes.descents import Descents, Visit
+from rosetta_jit.generate.passes.positions import said_by
+from rosetta_jit.generate.passes.reachable import reached, read_names
 from rosetta_jit.kernel.nodes import Block, Compare, Direction, Local
 from rosetta_jit.kernel.terms import END, index
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
-from rosetta_jit.generate.c.literals import constant
+from rosetta_jit.generate.c.printing.literals import constant
 from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.kernel.nodes import Direction
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.holder.lanes import Lanes
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 
 def head(writer: Writer, text: str, scope: Scope, direction: Direction, collected: tuple[str, ...] = ()) -> None:

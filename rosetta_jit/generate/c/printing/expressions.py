@@ -9,8 +9,8 @@ from __future__ import annotations
 from string import Template
 from typing import TYPE_CHECKING, assert_never
 
-from rosetta_jit.generate.c.literals import constant
-from rosetta_jit.generate.c.within import element_of
+from rosetta_jit.generate.c.holder.within import element_of
+from rosetta_jit.generate.c.printing.literals import constant
 from rosetta_jit.generate.c.words import C_ROWS, C_TYPES
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.kernel import nodes
@@ -18,7 +18,7 @@ from rosetta_jit.kernel.arithmetic import FLOATS, SIGNED
 from rosetta_jit.kernel.terms import END, type_of
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.scope import Scope
+    from rosetta_jit.generate.c.printing.scope import Scope
 
 BITWISE = {"and": "&", "or": "|", "xor": "^", "shr": ">>"}
 OPERATORS = {"add": "+", "wrapping_add": "+", "sub": "-", "mul": "*", "div": "/", "rem": "%", **BITWISE}

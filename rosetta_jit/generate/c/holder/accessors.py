@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace
-from rosetta_jit.generate.bounds import reserved
 from rosetta_jit.generate.c.words import RESERVED
+from rosetta_jit.generate.passes.bounds import reserved
 from rosetta_jit.generate.unit import Unit, wire_of
 
 if TYPE_CHECKING:
-    from rosetta_jit.generate.c.lanes import Lanes
-    from rosetta_jit.generate.c.rows import Struct
+    from rosetta_jit.generate.c.holder.lanes import Lanes
+    from rosetta_jit.generate.c.holder.rows import Struct
 
 ROWS, BYTES, SCRATCH_BYTES = 64, 1024, 4096
 """Room in a `memory` where nothing bounds what a message needs: elements, bytes of texts, bytes of scratch."""

@@ -1,0 +1,1 @@
+"""How a holder lies in C: lanes, and the structs of their rows."""

@@ -1,0 +1,1 @@
+"""What is found in kernels, and made of them, before a language prints them."""
