@@ -2110,7 +2110,7 @@ template <class Container, std::size_t Fixed = 0> struct open_lane {
 /* Gives a list as many elements as follow in the message. */
 template <class Container> auto opened(Container &target, std::int64_t count)
 {
-    if constexpr (std::is_constructible_v<element_type<Container>, without_values>) {
+    if constexpr (can_resize<Container>::value && std::is_constructible_v<element_type<Container>, without_values>) {
         const std::size_t wanted = static_cast<std::size_t>(count);
         if (wanted > target.size()) {
             if constexpr (lie_in_order<Container>::value) {
