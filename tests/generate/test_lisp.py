@@ -223,6 +223,16 @@ def test_symbols_do_not_depend_on_how_a_program_prints_them(tmp_path):
         assert found.splitlines()[-1].startswith("#S(JOINTS:HEADER :SEQ 7 "), case
 
 
+@lisp.needs_sbcl
+def test_a_system_can_be_loaded_again(tmp_path):
+    """A system that was generated anew is loaded into a running Lisp by the same form as the first time."""
+    header = type_request("decode", "std_msgs/Header", {"encoding": "ros1"})
+    unit = lisp.write(tmp_path, generated(header, "lisp", BOTH, "joints"))
+    begin = ["(require :asdf)", f'(asdf:load-asd "{tmp_path}/{unit}.asd")', f'(asdf:load-system "{unit}")']
+    shown = "(print (joints:header-seq (joints:decode (joints:encode (joints:make-header :seq 7)))))"
+    assert lisp.run(*begin, f'(asdf:load-system "{unit}" :force t)', shown, cwd=tmp_path).splitlines()[-1].split() == ["7"]
+
+
 WIDE = """syntax = "proto3"; package w; message Part { double x = 1; uint64 y = 2; }
 message Wide { uint64 a = 1; sint64 b = 2; double c = 3; repeated uint64 d = 4; repeated Part parts = 5; string name = 6; }"""
 WIDE_MESSAGE = (

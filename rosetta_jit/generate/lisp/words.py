@@ -55,13 +55,14 @@ def runtime_text() -> str:
 def runtime_names() -> frozenset[str]:
     """What the runtime and the functions that a program calls define, export, or make out of the names of numbers."""
     text = f"{runtime_text()}\n{API.read_text('utf-8')}"
-    defined = re.findall(rf"\((?:def[a-z-]+|:constructor) \(?(?:setf )?({NAME})", text) + re.findall(rf"#:({NAME})", text)
+    defined = re.findall(rf"\((?:def[a-z-]+|:constructor) \(?(?:setf )?({NAME})", text)
+    exported = " ".join(re.findall(r"\(export '\(([^)]*)\)", text)).split()
     pairs = re.findall(rf"\(define-(?:rounding|saturating) {NAME} ({NAME})", text)
     numbers = [name for name in LISP_TYPES if name != "bool"]
     made = {form.format(name) for name in numbers for form in ("{}s", "append-{}s", "{}-rem", "{}-neg", "{}-abs")}
     structs = re.findall(rf"\(defstruct \(({NAME})", text)
     of_structs = {f"make-{struct}" for struct in structs} | {f"{struct}-{slot}" for struct in structs for slot in _slots(struct)}
-    return frozenset((*defined, *pairs, *numbers, *made, *of_structs))
+    return frozenset((*defined, *exported, *pairs, *numbers, *made, *of_structs))
 
 
 @cache

@@ -3,13 +3,16 @@
 #-(and sbcl little-endian 64-bit)
 (error "this file is made for SBCL on machines of 64 bits that have the low byte of a number first")
 
-(defpackage #:$package
-  (:use #:common-lisp)
-  (:export #:decode #:encode #:encode-into #:message-size #:codec #:make-codec #:reset #:*now* #:refused #:octets #:with-floats
-           #:message-error #:decode-error #:encode-error #:message-error-kind #:message-error-path
-           #:message-error-detail #:message-error-line #:message-error-offset))
+; Where this is loaded again, `defpackage` would refuse the names that the types export besides.
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (unless (find-package '#:$package)
+    (make-package '#:$package :use '(#:common-lisp))))
 
 (in-package #:$package)
+
+(export '(decode encode encode-into message-size codec make-codec reset *now* refused octets with-floats
+          message-error decode-error encode-error message-error-kind message-error-path
+          message-error-detail message-error-line message-error-offset))
 
 (declaim (sb-ext:muffle-conditions sb-ext:compiler-note))
 
