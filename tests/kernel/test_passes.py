@@ -168,6 +168,12 @@ def test_short_loops_are_unrolled():
     assert [stmt.value for stmt in checks(unrolled, SetField)] == [index(0), index(1), index(2)]
 
 
+def test_a_loop_whose_values_nobody_reads_goes():
+    """In one pass: passes that change nothing afterwards do not make it run again."""
+    loop = For("i", i64("n"), (Let("read", Load("u8", BEGIN)), Let("twice", add(Local("u8", "read"), index(1)))))
+    assert not checks(simplify(kernel((need(BEGIN, 8), Let("n", Load("i64", BEGIN)), loop, Return(BEGIN)))), For)
+
+
 def test_the_same_value_is_computed_once():
     n = i64("n")
     body = (need(BEGIN, 4), Let("n", kernels.Convert("i64", Load("i32", BEGIN))), Let("a", mul(n, 12)), Let("b", mul(n, 12)))

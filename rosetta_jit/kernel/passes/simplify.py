@@ -131,11 +131,15 @@ def _nested(stmt: nodes.Stmt, names: _Names) -> nodes.Block:
         names.fixed.add(stmt.variable)
     known = iter([(stmt.condition, TRUE), (stmt.condition, FALSE)]) if isinstance(stmt, nodes.If) else repeat(None)
     simple = with_blocks(stmt, lambda block: _branch(block, names, next(known)))
-    match simple:
+    return () if _does_nothing(simple) else (simple,)
+
+
+def _does_nothing(stmt: nodes.Stmt) -> bool:
+    match stmt:
         case nodes.If(_, (), ()) | nodes.For(_, _, ()):
-            return ()
+            return True
         case _:
-            return (simple,)
+            return False
 
 
 def _branch(block: nodes.Block, names: _Names, known: tuple[nodes.Expr, nodes.Expr] | None) -> nodes.Block:
@@ -176,6 +180,8 @@ def _used(block: nodes.Block, read: set[str], live: set[str]) -> nodes.Block:
                 continue
             case _:
                 kept = with_blocks(stmt, lambda inner: _used(inner, read, live))
+                if _does_nothing(kept):
+                    continue
         live.update([part.name for part in parts_of((kept,)) if type(part) is nodes.Local])
         result.append(kept)
     return tuple(reversed(result))
