@@ -427,3 +427,34 @@ def test_the_mapping_that_decodes_alone_has_no_encoder():
     text = generated(request, "cpp", ("decode",), "torso")["torso.hpp"]
     assert "try_decode(" in text
     assert "encode(" not in text.replace("decode(", "")
+
+
+ONE_OF = """syntax = "proto3"; package h; message last_is_warning { int32 x = 1; }
+message Hand { oneof last { string warning = 1; last_is_warning touched = 2; int32 class = 3; } int32 last_is_class = 4; }"""
+CASES = """#include "unit.hpp"
+int main()
+{
+    unit::Hand hand;
+    hand.last = std::string("hot");
+    static_assert(unit::Hand::last_is_touched == 2 && unit::Hand::last_is_class_ == 3, "a field has the other name");
+    return hand.last.index() == unit::Hand::last_is_warning && std::get<unit::Hand::last_is_warning>(hand.last) == "hot" ? 0 : 1;
+}
+"""
+
+
+@cpp.needs_cpp
+def test_cases_of_a_union_have_constants(tmp_path):
+    """A variant has no names of its own."""
+    request = type_request("decode", "h.Hand", {"encoding": "protobuf", "schema": {"h.proto": ONE_OF}})
+    cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit"))
+    (tmp_path / "main.cpp").write_text(CASES)
+    command = ["g++", "-std=c++17", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror", "main.cpp", "unit.cpp", "-o", "main"]
+    subprocess.run([*command, f"-I{tmp_path}"], cwd=tmp_path, check=True)
+    subprocess.run([tmp_path / "main"], check=True)
+
+
+@cpp.needs_cpp
+def test_a_constant_may_be_called_as_a_type(tmp_path):
+    schema = "uint8 Wheel=3\nWheel w\nWheel[] ws\n===\nMSG: a/Wheel\nuint8 x\n"
+    cpp.write(tmp_path, generated(type_request("decode", "a/Car", {"encoding": "ros1", "schema": schema}), "cpp", BOTH, "unit"))
+    subprocess.run(["g++", "-std=c++17", "-fsyntax-only", f"-I{tmp_path}", tmp_path / "unit.cpp"], check=True)

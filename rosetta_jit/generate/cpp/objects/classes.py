@@ -14,7 +14,23 @@ from rosetta_jit.generate.constants import constants_of, number_of
 from rosetta_jit.generate.cpp.objects.names import OWN_WORDS, member_names
 from rosetta_jit.generate.inner_types import reached_types
 from rosetta_jit.model.recursive_structs import recursive_structs
-from rosetta_jit.model.types import Array, Bool, Bytes, Enum, Float, Int, Map, NamedConstant, Optional, Ref, String, Struct, Type, Union
+from rosetta_jit.model.types import (
+    Array,
+    Bool,
+    Bytes,
+    Enum,
+    Field,
+    Float,
+    Int,
+    Map,
+    NamedConstant,
+    Optional,
+    Ref,
+    String,
+    Struct,
+    Type,
+    Union,
+)
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.unit import Unit
@@ -54,19 +70,40 @@ def _enum(identifier: str, enum: Enum, unit: str) -> str:
 
 
 def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: frozenset[str], unit: str) -> str:
-    lines, members = [comment(struct.name), f"struct {identifier} {{"], member_names(struct, unit, identifier)
-    named = {name: f"::{unit}::{each}" if each in members else each for name, each in names.items()}
+    members = member_names(struct, unit, identifier)
     scope = Namespace(RESERVED | OWN_WORDS | {identifier, *members} | of_unit(unit, (each.name for each in struct.constants)))
-    lines += [_constant(scope.identifier(each.name), each) for each in constants_of(struct)]
-    for field, member in zip(struct.fields, members, strict=True):
-        kind = _type(field.type, named, recursive)
-        is_bare = isinstance(field.type, Bool | Int | Float | Ref) or kind.startswith("std::array")
-        zero = "{}" if is_bare and not kind.startswith("std::unique") else ""
-        said = " ".join(part for part in (field.doc, f"[{field.unit}]" if field.unit else "") if part)
-        lines.append(f"    {kind} {member}{zero};{f' {comment(said)}' if said else ''}")
+    constants = [(scope.identifier(each.name), each) for each in constants_of(struct)]
+    cases = [
+        [scope.identifier(f"{member}_is_{case.name}") for case in _cases(field.type)]
+        for field, member in zip(struct.fields, members, strict=True)
+    ]
+    hidden = {*members, *(name for name, _ in constants), *(name for some in cases for name in some)}
+    named = {name: f"::{unit}::{each}" if each in hidden else each for name, each in names.items()}
+    lines = [comment(struct.name), f"struct {identifier} {{", *(_constant(*each) for each in constants)]
+    for field, member, some in zip(struct.fields, members, cases, strict=True):
+        lines += [f"    static constexpr std::size_t {name} = {number};" for number, name in enumerate(some, 1)]
+        lines.append(f"    {_field(field, member, _type(field.type, named, recursive))}")
     if struct.option("unknown"):
         lines.append("    std::string unknown_fields; /* fields that the schema does not know, as they came */")
     return "\n".join([*lines, "};", ""])
+
+
+def _field(field: Field, member: str, kind: str) -> str:
+    is_bare = isinstance(field.type, Bool | Int | Float | Ref) or kind.startswith("std::array")
+    zero = "{}" if is_bare and not kind.startswith("std::unique") else ""
+    said = " ".join(part for part in (field.doc, f"[{field.unit}]" if field.unit else "") if part)
+    return f"{kind} {member}{zero};{f' {comment(said)}' if said else ''}"
+
+
+def _cases(type_: Type) -> tuple[Field, ...]:
+    """Those of a union, or of the unions that an array has; what index each has in its variant is a constant of the class."""
+    match type_:
+        case Union(_, cases):
+            return cases
+        case Array(inner) | Optional(inner):
+            return _cases(inner)
+        case _:
+            return ()
 
 
 def _constant(identifier: str, constant: NamedConstant) -> str:
