@@ -461,3 +461,15 @@ def test_lanes_of_one_field_are_told_apart():
         "PARTS_NAME",
         "PARTS_NAME_BYTES",
     ]
+
+
+MAPS = """syntax = "proto3"; package m; message Pad { repeated float taxels = 1; }
+message Hand { map<string, Pad> pads = 1; repeated Pad history = 2; repeated double angles = 3; }"""
+
+
+def test_the_header_says_in_which_lane_the_elements_of_an_array_are():
+    """A struct that stands in several places has a lane for each of them."""
+    text = generated(type_request("decode", "m.Hand", {"encoding": "protobuf", "schema": {"m.proto": MAPS}}), "c", BOTH, "hand")["hand.h"]
+    assert "hand_span angles; /* in `angles` */" in text
+    assert "hand_span taxels; /* in the lane of its path, as `pads_value_taxels` */" in text
+    assert "/* an entry of a map */" in text

@@ -80,7 +80,7 @@ def _calls(unit: Unit) -> list[str]:
 
 def struct_text(name: str, lanes: Lanes, struct: Struct, *, cases: bool = True) -> str:
     """The struct of a row; ``cases``: with an enum of those of a union."""
-    lines = [comment(struct.shown), f"typedef struct {struct.identifier} {{"]
+    lines = [comment(struct.shown or "an entry of a map"), f"typedef struct {struct.identifier} {{"]
     lines += [f"    {_member(name, lanes, member)}" for member in struct.members]
     lines.append(f"}} {struct.identifier};")
     if struct.cases and cases:
@@ -99,8 +99,9 @@ def _member(name: str, lanes: Lanes, member: Member) -> str:
         case Struct():
             text = f"{member.type.identifier} {member.identifier};"
     said = member.comment
-    if member.lane is not None:
-        said = f"{said}; in `{lanes.rows(member.lane)}`".removeprefix("; ")
+    if member.lanes:
+        of_path = "" if len(member.lanes) == 1 else "the lane of its path, as "
+        said = f"{said}; in {of_path}`{lanes.rows(member.lanes[0])}`".removeprefix("; ")
     if member.type == "bool":
         said = "0, or else true"
     if member.presence is not None:

@@ -17,7 +17,7 @@ static int64_t fail(struct failure *failure, ptrdiff_t site, int64_t offset)
 }
 
 /* == fail_here | needs: failure == */
-/* The same for a function that many places share: they know what its sites are. */
+/* Where a message cannot be read, in a function that many places share: they know what its sites are. */
 static int64_t fail_here(struct failure *failure, ptrdiff_t site, int64_t offset)
 {
     failure->offset = offset;
@@ -42,7 +42,7 @@ static inline bool lacks(int64_t at, int64_t size, int64_t end)
 }
 
 /* == lacks_behind == */
-/* The same where `at` is known to lie in the message, or to be its end. */
+/* Whether some of `size` bytes from `at` are missing before `end`: `at` is known to lie in the message, or to be its end. */
 static inline bool lacks_behind(int64_t at, int64_t size, int64_t end)
 {
     return (uint64_t)size > (uint64_t)(end - at);

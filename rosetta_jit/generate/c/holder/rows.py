@@ -17,7 +17,7 @@ from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.kernel.nodes import WIDTH
 from rosetta_jit.model.layout import LINK_WORDS, SPAN_BYTES, Lane, Layout, Members, Number, Row, Slot, Span, Variant
-from rosetta_jit.startup.dataclass import dataclass
+from rosetta_jit.startup.dataclass import dataclass, field, replace
 
 OWN_WORDS = frozenset({"presence", "which", "unknown", "links", "nothing", "value"})
 PADDING = re.compile(r"padding_?\d*")
@@ -35,7 +35,10 @@ SPAN = SpanType()
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A member of a struct; ``many`` is how many scalars an array has, ``presence`` the bit that says whether it is there."""
+    """A member of a struct; ``many`` is how many scalars an array has, ``presence`` the bit that says whether it is there.
+
+    The elements of a span are in one of ``lanes``: a struct that stands in several places has a lane for each of these.
+    """
 
     identifier: str
     offset: int
@@ -43,7 +46,7 @@ class Member:
     many: int | None = None
     comment: str = ""
     presence: int | None = None
-    lane: int | None = None
+    lanes: tuple[int, ...] = field(default=(), compare=False)
 
     @property
     def size(self) -> int:
@@ -115,7 +118,7 @@ class Structs:
             members.append(Member("presence", 0, "u64", row.presence_words, "a bit for each field that may be absent"))
         if row.unknown is not None:
             comment = "fields that the schema does not know, as they came"
-            members.append(Member("unknown", row.unknown.offset - row.offset, SPAN, comment=comment, lane=row.unknown.lane))
+            members.append(Member("unknown", row.unknown.offset - row.offset, SPAN, comment=comment, lanes=(row.unknown.lane,)))
         for each in row.members:
             identifier = _own(names.identifier(each.name))
             members.append(self._member(identifier, each.slot, row.offset, f"{path}_{each.name}", each.presence))
@@ -139,16 +142,18 @@ class Structs:
         return Namespace(RESERVED | OWN_WORDS | of_unit(self.prefix, (each.name for each in fields)))
 
     def _member(self, identifier: str, slot: Slot, base: int, path: str, presence: int | None) -> Member:
-        lane = slot.lane if isinstance(slot, Span) else None
-        return Member(identifier, slot.offset - base, self._type(slot, path), presence=presence, lane=lane)
+        lanes = (slot.lane,) if isinstance(slot, Span) else ()
+        return Member(identifier, slot.offset - base, self._type(slot, path), presence=presence, lanes=lanes)
 
     def _struct(self, name: str, shown: str, members: list[Member], size: int | None, cases: tuple[str, ...] = ()) -> Struct:
         """The struct of such members, which is made once, whichever lanes they refer to."""
         complete = _without_gaps(members, size)
         key = (shown, tuple((each.identifier, each.offset, each.type, each.many, each.presence) for each in complete), cases)
-        if key not in self.made:
+        if (found := self.made.get(key)) is None:
             end = complete[-1].offset + complete[-1].size
             self.made[key] = Struct(self._named(f"{self.prefix}_{name}"), shown, end, complete, cases)
+        else:
+            self.made[key] = replace(found, members=tuple(map(_in_all_lanes, found.members, complete)))
         return self.made[key]
 
     def _named(self, wanted: str) -> str:
@@ -156,6 +161,12 @@ class Structs:
         taken = {struct.identifier for struct in self.made.values()}
         candidates = (self.names.identifier(wanted if number == 1 else f"{wanted}_{number}") for number in count(1))
         return next(each for each in candidates if each not in taken)
+
+
+def _in_all_lanes(member: Member, other: Member) -> Member:
+    """A member with its own lanes and those of the same one in another place."""
+    lanes = tuple(dict.fromkeys((*member.lanes, *other.lanes)))
+    return member if lanes == member.lanes else replace(member, lanes=lanes)
 
 
 def _own(identifier: str) -> str:
