@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 
 BLANKS = " \t\r"
+AROUND_COMMENTS = f"#{BLANKS}"
 DECLARATION = re.compile(r"([^ \t]+)([ \t]*)(.*)", re.DOTALL)
 
 
@@ -64,7 +65,7 @@ class _Reader:
     def _line(self, line: Word) -> None:
         before, sign, comment = line.text.partition("#")
         clean = self._part(line, 0, len(before))
-        self._comment(comment.strip("# \t\r"), goes_on=bool(sign or clean.text))
+        self._comment(comment.strip(AROUND_COMMENTS), goes_on=bool(sign or clean.text))
         if not clean.text:
             return
         if self.dialect.extended and clean.span.start > line.span.start:
@@ -138,6 +139,8 @@ class _Reader:
         name, value = self._part(rest, 0, equals), self._part(rest, equals + 1)
         if first.text == "string" and not self.dialect.extended:
             value = self._part(line, rest.span.start + equals + 1 - line.span.start)
+            if value.text.partition("#")[2].strip(AROUND_COMMENTS):
+                self.comments.pop()  # which is the end of the text
         scalar = self.dialect.scalars.get(first.text)
         named = self._named(name, "constant", self.dialect.constants)
         if scalar is None:

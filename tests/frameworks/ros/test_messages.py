@@ -84,6 +84,12 @@ def test_constants_of_ros1():
     assert constants(text) == {"S": "a # b=c", "N": -5, "F": 1.5, "T": True, "Z": False, "X": 7, "C": 65, "E": ""}
 
 
+def test_a_text_has_no_comment_behind_it():
+    """In ROS 1 it goes on to the end of its line; what stands above it is its comment."""
+    struct = alone("# the arm\nstring S=a #1\nint8 N=5 # five\nstring T=a #").types["pkg/Foo"]
+    assert [each.doc for each in struct.constants] == ["the arm", "five", ""]
+
+
 def test_constants_of_ros2():
     text = (
         "string S=\"a 'b' \\\"c\\\"\" # d\nuint8 H=0xff\nint32 B=-0b101\nbool T=TRUE\nbool O=1\nfloat64 F=-inf\nwstring W='é'\nstring R=a b"
