@@ -31,6 +31,12 @@ from rosetta_jit.startup.dataclass import replace
 REGISTERS: dict[Direction, str] = {"decode": "_UNPACK", "encode": "_PACK"}
 """The lists of the registers of each direction, in the module."""
 
+LENIENT = "reportArgumentType reportOperatorIssue reportOptionalMemberAccess reportPossiblyUnboundVariable"
+TYPES = f"""# Whoever imports this finds types. Type checkers leave the statements of the module itself alone.
+# mypy: ignore-errors
+# pyright: basic, {", ".join(f"{rule}=false" for rule in LENIENT.split())}
+"""
+
 NO_MEMORY = "the message asks for more memory than its size allows"
 
 
@@ -61,7 +67,7 @@ class _Module:
         named = mentioned(f"{declared}\n{printed}")
         constants = needed(self._constants(), named)
         before = support(named | mentioned(constants))
-        text = f"{made}\nfrom __future__ import annotations\n\n{before}\n\n{declared}\n\n\n{constants}\n\n\n{printed}"
+        text = f"{made}\n{TYPES}from __future__ import annotations\n\n{before}\n\n{declared}\n\n\n{constants}\n\n\n{printed}"
         return re.sub(r"\n{4,}", "\n\n\n", text).rstrip() + "\n"
 
     def _constants(self) -> str:
