@@ -11,6 +11,7 @@ from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import Language, installed, language_named
 from rosetta_jit.generate.origins import Origin, origins_of
 from rosetta_jit.generate.passes.bounds import bounds_of_type, least, reserved
+from rosetta_jit.generate.passes.rounds import with_rounds
 from rosetta_jit.generate.provenance import line_of_mapping, line_of_type
 from rosetta_jit.generate.unit import Role, Unit, UserFunction, wire_of
 from rosetta_jit.kernel.ir import Kernel
@@ -39,15 +40,18 @@ class AheadOfTime(Build):
     def _layout_of(self, name: str, schema: Schema) -> Layout:
         return layout(Ref(name), schema, padded=True)
 
+    def _passes(self) -> tuple[passes.Pass, ...]:
+        return passes.ANY_MACHINE
+
     def _optimised(self, kernel: Kernel) -> Kernel:
-        return postpone(alone(passes.run(kernel, passes.ANY_MACHINE, large=self._large)))
+        return postpone(alone(passes.run(kernel, self._passes(), large=self._large)))
 
 
 class LowByteFirst(AheadOfTime):
     """The same for machines whose numbers lie as most encodings have them: arrays of them are copied as they are."""
 
-    def _optimised(self, kernel: Kernel) -> Kernel:
-        return postpone(alone(passes.run(kernel, passes.FIELD_BY_FIELD, large=self._large)))
+    def _passes(self) -> tuple[passes.Pass, ...]:
+        return passes.FIELD_BY_FIELD
 
 
 class IntoObjects(LowByteFirst):
@@ -55,6 +59,13 @@ class IntoObjects(LowByteFirst):
 
     TEXTS_STAY = True
     ROWS_IN_ORDER = True
+
+
+class InRounds(LowByteFirst):
+    """The same for code that makes an object in each round of a loop."""
+
+    def _passes(self) -> tuple[passes.Pass, ...]:
+        return with_rounds(super()._passes(), self.layout)
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,6 +234,8 @@ def _check_name(name: str, language: Language | None) -> None:
 def _machine(language: Language) -> type[AheadOfTime]:
     if language.fills_objects:
         return IntoObjects
+    if language.makes_objects:
+        return InRounds
     return LowByteFirst if language.low_byte_first else AheadOfTime
 
 

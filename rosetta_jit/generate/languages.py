@@ -46,6 +46,8 @@ class Language:
     fills_objects
         What it prints is such, and the code around its decoders takes texts from the message, too. The code around its encoders makes rows
         of objects, those of what an object contains after its own.
+    makes_objects
+        What it prints is such, too, and makes an object in each round of a loop: loops that fill structs with lists are not written out.
     freestanding
         What it prints can do without the language's library.
     holders
@@ -66,6 +68,7 @@ class Language:
     borrows: bool = False
     low_byte_first: bool = False
     fills_objects: bool = False
+    makes_objects: bool = False
     freestanding: bool = False
     holders: bool = False
     numpy: bool = False
@@ -98,7 +101,7 @@ LANGUAGES = (
         "one module of dataclasses",
         "rosetta_jit.generate.python.language:files",
         borrows=True,
-        low_byte_first=True,
+        makes_objects=True,
         numpy=True,
         wires=True,
         taken="rosetta_jit.generate.python.printing.classes:NOT_MODULES",

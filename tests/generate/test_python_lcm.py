@@ -244,3 +244,36 @@ def test_bytes_of_one_size_are_taken_by_one_call(array):
     for number, at in product((-1, 5, 1 << 20), (8, 12)):
         messages += [each[:at] + struct.pack(">i", number) + each[at + 4 :] for each in messages[:7]]
     answers_as_the_library(unit, (decode, encode), harmed(messages[:8], 20, array) + messages)
+
+
+LARGE = """
+    struct m { int32_t n; r one; boolean flags[3][n]; r two; double numbers[n][3]; r three[3]; }
+    struct r { int32_t n; string names[3][n]; boolean bits[9]; int32_t nine[9]; string last; float rows[n][3]; string others[3][n]; }
+"""
+ROW = {"n": 1, "names": 3 * [["é"]], "bits": 9 * [True], "nine": [*range(9)], "last": "", "rows": [3 * [0.5]], "others": 3 * [["x"]]}
+
+
+def test_large_types_are_read_into_lists_and_written_in_parts():
+    """Of these passes run but once, and leave conditions around loops that only say that there are rounds."""
+    given = lcm(LARGE)
+    text = text_of(given)
+    assert "_SIZE_SITES" not in text
+    assert "bytearray(" not in text.partition("def _borrow_1")[2]
+    empty = {**ROW, "n": 0, "names": [[], [], []], "rows": [], "others": [[], [], []]}
+    compare(given, {"one": ROW, "flags": [[], [], []], "three": 3 * [empty]}, {"n": 1, "flags": 3 * [[True]], "numbers": [3 * [1.5]]})
+
+
+def test_few_structs_in_arrays_are_made_by_a_loop():
+    """Those of arrays of a constant length, too: of structs with an array, with bytes, with a bool."""
+    given = lcm(
+        "struct m { int32_t n; a ones[3]; b rows[n][2]; c flags[3]; } struct a { int8_t x[9]; int16_t y[2]; } "
+        "struct b { byte raw[4]; } struct c { boolean flag; }"
+    )
+    assert "bytearray(" not in text_of(given).partition("def _borrow_1")[2]
+    one = {"x": [*range(9)], "y": [-1, 2]}
+    compare(given, {"n": 1, "ones": 3 * [one], "rows": [2 * [{"raw": b"abcd"}]], "flags": 3 * [{"flag": True}]}, {"ones": 3 * [one]})
+
+
+def test_fields_that_are_called_as_their_class_have_a_first_value():
+    unit = module(type_request("decode", "t.m", lcm("struct m { k k; k j; } struct k { int8_t n; }")))
+    assert unit.decode(unit.encode(unit.m())) == unit.m(unit.k(0), unit.k(0))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.limits import MAX_UNROLLED_ROUNDS, MAX_UNROLLED_STATEMENTS
 from rosetta_jit.kernel.nodes import Assign, Block, Call, Const, Expr, For, HostCall, Let, Stmt, Var, While
@@ -11,22 +13,22 @@ from rosetta_jit.kernel.walk import bound_names, statements
 from rosetta_jit.startup.dataclass import replace
 
 
-def unroll(kernel: Kernel) -> Kernel:
-    """The kernel without short loops."""
+def unroll(kernel: Kernel, stays: Callable[[Block], bool] = lambda _: False) -> Kernel:
+    """The kernel without short loops, but for those whose body ``stays``."""
     names = {name for body in kernel.bodies for stmt, _ in statements(body) for name in bound_names(stmt)}
-    return with_bodies(kernel, tuple(_block(body, names) for body in kernel.bodies))
 
+    def unrolled(block: Block) -> Block:
+        result: list[Stmt] = []
+        for stmt in block:
+            match stmt:
+                case For(variable, Const(_, count), body) if _is_short(int(count), body) and not stays(body):
+                    for number in range(int(count)):
+                        result.extend(_round(body, variable, number, names))
+                case _:
+                    result.append(with_blocks(stmt, unrolled))
+        return tuple(result)
 
-def _block(block: Block, names: set[str]) -> Block:
-    result: list[Stmt] = []
-    for stmt in block:
-        match stmt:
-            case For(variable, Const(_, count), body) if _is_short(int(count), body):
-                for number in range(int(count)):
-                    result.extend(_round(body, variable, number, names))
-            case _:
-                result.append(with_blocks(stmt, lambda inner: _block(inner, names)))
-    return tuple(result)
+    return with_bodies(kernel, tuple(map(unrolled, kernel.bodies)))
 
 
 def _is_short(count: int, body: Block) -> bool:

@@ -12,6 +12,7 @@ from rosetta_jit.generate.python.decoding.making_late_rows import MakeLate
 from rosetta_jit.generate.python.decoding.sparse import OBJECT, attributes_of, begun, settings
 from rosetta_jit.generate.python.passes.borrowed import borrowed
 from rosetta_jit.generate.python.passes.direct import Direct
+from rosetta_jit.generate.python.passes.guards import without_guards
 from rosetta_jit.generate.python.printing.functions import is_flat, print_kernel
 from rosetta_jit.generate.python.printing.late_lists import late_lists
 from rosetta_jit.generate.python.printing.printed import Attempt, Objects
@@ -19,6 +20,7 @@ from rosetta_jit.generate.python.printing.scope import Scope
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Advance, Block
+from rosetta_jit.kernel.rewrite import with_bodies
 from rosetta_jit.kernel.walk import statements
 from rosetta_jit.model.layout import Span
 from rosetta_jit.model.types import Bytes, Ref
@@ -89,7 +91,8 @@ def print_decoder(
     unit: Unit, names: Mapping[str, str], lanes: Callable[[Sequence[int]], Lanes], loads: set[str], paths: tuple[str, ...]
 ) -> tuple[str, tuple[Attempt, ...]]:
     """The functions that read a message, as text, and how they are called."""
-    kernel = borrowed(undamaged_kernel(unit.kernels["borrow"]), unit.layout)
+    kernel = undamaged_kernel(unit.kernels["borrow"])
+    kernel = borrowed(with_bodies(kernel, tuple(map(without_guards, kernel.bodies))), unit.layout)
     all_lanes = lanes(kernel.strides)
     flat = is_flat(kernel, all_lanes)
     decoder = _Decoder(unit, names, kernel, dict[str, str]() if flat and not unit.layout.recursive else None)

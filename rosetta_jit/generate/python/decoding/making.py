@@ -145,13 +145,13 @@ class Make:
             return known
         start, count = self.start_of(slot, lane, row), self.count_of(slot, lane, row)
         if slot.lane in self.scope.direct.gathered:
-            elements = f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {count}]"
-        elif lane == 0 and self.functions is not None:
+            return f"{self.scope.lanes.rows(slot.lane)}[{start} : {start} + {count}]"
+        if lane == 0 and self.functions is not None:
             elements = self._by_function(self.functions, type_, slot, start, count)
         else:
             elements = self.elements(type_, slot, lane, start, count)
         is_late = lane == 0 and self.scope.direct.late_at(slot) is not None
-        if isinstance(type_, Array | Map) and not is_late and (count.isidentifier() or " for " in elements):
+        if isinstance(type_, Array | Map) and not is_late:
             return f"({elements} if {count} else {self._nothing(type_, slot)})"
         return elements
 

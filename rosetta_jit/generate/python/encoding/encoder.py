@@ -16,6 +16,7 @@ from rosetta_jit.generate.python.encoding.recursive_rows import row_function, ro
 from rosetta_jit.generate.python.passes.asked import counts_asked_first
 from rosetta_jit.generate.python.passes.bools import with_stored_bools
 from rosetta_jit.generate.python.passes.counted import counted
+from rosetta_jit.generate.python.passes.guards import without_guards
 from rosetta_jit.generate.python.passes.local_names import Locals
 from rosetta_jit.generate.python.passes.positions import NotInParts, Sum, without_places, without_positions
 from rosetta_jit.generate.python.passes.presence import is_behind_message, without_lengths
@@ -137,7 +138,7 @@ def _scope(kernel: Kernel, lanes: Lanes, paths: tuple[str, ...], loads: set[str]
 
 
 def _parts(unit: Unit, kernel: Kernel, scope: ObjectScope, block: Block, written: dict[str, str], depth: int) -> Parts:
-    body = with_stored_bools(without_positions(counted(without_lengths(block, kernel.sites, scope.lanes.own))))
+    body = with_stored_bools(without_guards(without_positions(counted(without_lengths(block, kernel.sites, scope.lanes.own)))))
     body = counts_asked_first(body, unit.layout)
     objects = Objects(lambda _, __: "message")
     function = Function(scope, kernel, kernel.sites, {}, unit.origins.get("encode", ()), objects, writer=Writer(depth=depth))

@@ -89,9 +89,9 @@ def classes(unit: Unit) -> str:
     """Their definitions, each before those that contain it."""
     names = names_of(unit)
     texts: list[str] = []
-    for name, identifier in names.items():
-        declared = unit.schema.types[name]
-        texts.append(_enum(identifier, declared) if isinstance(declared, Enum) else _class(identifier, declared, names, unit))
+    for number, (name, identifier) in enumerate(names.items()):
+        declared, before = unit.schema.types[name], frozenset([*names.values()][:number])
+        texts.append(_enum(identifier, declared) if isinstance(declared, Enum) else _class(identifier, declared, names, unit, before))
     return "\n\n".join(texts)
 
 
@@ -118,17 +118,21 @@ def _doc(text: str) -> str:
     return f'"""{plain}"""'
 
 
-def _class(identifier: str, struct: Struct, names: dict[str, str], unit: Unit) -> str:
+def _class(identifier: str, struct: Struct, names: dict[str, str], unit: Unit, before: frozenset[str]) -> str:
+    """The dataclass of a struct; ``before`` are the classes that stand before it."""
     head = ["@dataclass(slots=True)", f"class {identifier}:"]
     head = ["@dataclass(slots=True, eq=False)", f"class {identifier}(_Comparable):"] if unit.numpy else head
     lines = [*head, f"    {_doc(f'{struct.name}. {struct.doc}'.rstrip('. ') + '.')}", ""]
     members = member_names(struct)
     scope = Namespace(MEMBERS.union(members))
-    for constant in constants_of(struct):
-        lines.append(f"    {scope.identifier(constant.name)} = {_literal(constant.value)}")
+    constants = {scope.identifier(each.name): each for each in constants_of(struct)}
+    for name, constant in constants.items():
+        lines.append(f"    {name} = {_literal(constant.value)}")
         lines += [f"    {_doc(constant.doc)}"] if constant.doc else []
+    seen = before.difference(members, constants)
     for each, member in zip(struct.fields, members, strict=True):
-        lines.append(f"    {member}: {_beside(members, f'{_type(each.type, names, unit)} = {_default(each.type, names, unit)}')}")
+        default = _default(each.type, names, unit, seen)
+        lines.append(f"    {member}: {_beside(members, f'{_type(each.type, names, unit)} = {default}')}")
         said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
         lines += [f"    {_doc(said)}"] if said else []
     if struct.option("unknown"):
@@ -182,13 +186,22 @@ def _type(type_: Type, names: dict[str, str], unit: Unit, *, inside: bool = Fals
             assert_never(type_)
 
 
-def _default(type_: Type, names: dict[str, str], unit: Unit) -> str:
-    """What the field of a dataclass says of its first value: objects that can change are made for each."""
+def _default(type_: Type, names: dict[str, str], unit: Unit, seen: Collection[str]) -> str:
+    """What the field of a dataclass says of its first value: objects that can change are made for each.
+
+    It makes an object of a class that can be ``seen`` there without a function in between.
+    """
     value = first_value(type_, names, unit)
     if value in FACTORIES:
         return f"field(default_factory={FACTORIES[value]})"
-    is_shared = value in ("0", "None") or not isinstance(type_, Array | Map | Ref)
-    return value if is_shared else f"field(default_factory=lambda: {value})"
+    if isinstance(type_, Ref) and value == f"{names[type_.name]}()" and names[type_.name] in seen:
+        return f"field(default_factory={names[type_.name]})"
+    return value if _is_shared(type_, value) else f"field(default_factory=lambda: {value})"
+
+
+def _is_shared(type_: Type, value: str) -> bool:
+    """Whether a first value may be one object for all: it cannot change."""
+    return value in ("0", "None") or not isinstance(type_, Array | Map | Ref)
 
 
 FACTORIES = {"[]": "list", "{}": "dict"}
@@ -212,7 +225,8 @@ def first_value(type_: Type, names: Mapping[str, str], unit: Unit, *, inside: bo
         case Array(element, length) if (scalar := numpy_scalar(element, unit)) is not None:
             return f"np.zeros({length if isinstance(length, int) else 0}, np.{scalar})"
         case Array(element, int(length)) if length:
-            return f"[{first_value(element, names, unit, inside=True)} for _ in range({length})]"
+            first = first_value(element, names, unit, inside=True)
+            return f"[{first}] * {length}" if _is_shared(element, first) else f"[{first} for _ in range({length})]"
         case Array():
             return "[]"
         case Map():

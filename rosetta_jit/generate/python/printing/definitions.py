@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from rosetta_jit.generate.python.printing.scope import TRUTH
 
-METHODS = {"load": "unpack_from", "store": "pack_into", "whole": "pack", "reads": "unpack_from", "writes": "pack"}
-"""The methods of the struct module that read and write numbers; ``reads`` and ``writes`` are of as many as a message says."""
+METHODS = {
+    "load": "unpack_from",
+    "each": "iter_unpack",
+    "store": "pack_into",
+    "whole": "pack",
+    "reads": "unpack_from",
+    "pieces": "unpack_from",
+    "writes": "pack",
+}
+"""The methods of the struct module that read and write; ``reads``, ``pieces`` and ``writes`` are of as many as a message says."""
 
 
 def definition(name: str) -> str:
@@ -20,9 +28,11 @@ def definition(name: str) -> str:
         case "EMPTY":
             value = f'memoryview(b"").cast("{code}")'
         case "writes" if code in "qQ" and not order:
-            value = f'_ByCount("{{}}" + _{code}, "pack")'
+            value = f'_ByCount(("{{}}" + _{code}).format, "pack")'
+        case "pieces":
+            value = f'_ByCount("{code}".__mul__, "{METHODS[verb]}")'
         case "reads" | "writes":
-            value = f'_ByCount("{first.strip("<")}{{}}{code}", "{METHODS[verb]}")'
+            value = f'_ByCount("{first.strip("<")}{{}}{code}".format, "{METHODS[verb]}")'
         case _:
             value = f'Struct("{first}{code}").{METHODS[verb]}'
     return f"{name} = {value}"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import groupby
 
 from rosetta_jit.generate.parentheses import bare
 from rosetta_jit.generate.passes.cleared import slots_of
@@ -18,8 +17,6 @@ from rosetta_jit.startup.dataclass import replace
 
 SOME = 160
 """Numbers of an array from which on a view of them is quicker than the struct module."""
-FEW_ROWS = 3
-"""Rows up to which a loop takes no longer than reading all of them at once."""
 
 
 def takes_text(scope: Scope, condition: Expr) -> str | None:
@@ -58,9 +55,9 @@ def numbers_read(scope: Scope, lane: int, slot: Slot, row: Callable[[], str], at
         few = f"[*{scope.by_count(order, code, 'reads')}[{bare(expression(scope, count))}](data, {begin})]"
         return f"{few} if {expression(scope, count)} < {SOME} else {many}"
     numbers = sorted((each.offset, each.scalar) for each in slots_of(slot) if isinstance(each, Number))
-    code = "".join(f"{len([*same])}{each}" for each, same in groupby(CODES[scalar] for _, scalar in numbers))
+    each = scope.struct(order or "<", "".join(CODES[scalar] for _, scalar in numbers), "each")
     names = _targets([scope.own(lane, offset, scalar) for offset, scalar in numbers])
-    found = f'[{row()} for {names} in _unpack_each("{order}{code}", {part})]'
+    found = f"[{row()} for {names} in {each}({part})]"
     return found if isinstance(size, Const) else f"{found} if {expression(scope, _divided(size, stride))} else []"
 
 
@@ -71,8 +68,6 @@ def rows_read(scope: Scope, loop: For, slot_of: Callable[[int], Slot], row: Call
     an array; ``row`` makes the struct.
     """
     lane, round_ = scope.direct.loops.get(loop.variable), Local("i64", loop.variable)
-    if isinstance(loop.count, Const) and loop.count.value <= FEW_ROWS:
-        return None
     match loop.body:
         case (Let(item, Binary("add", one, other)), *fills) if lane is not None:
             size = _size_of_bytes(scope, lane, item, fills) or _size_of_numbers(scope, item, fills) or _size_of_array(scope, item, fills)
@@ -148,18 +143,23 @@ def _table(
 
 def _rows(scope: Scope, first: Stmt, base: Expr, count: Expr, size: int, made: Callable[[Scope], str] | None) -> str:
     """A list of rows, by the statement that fills the first field of one; ``made`` are those that are structs."""
-    begin, whole = bare(expression(scope, base)), expression(scope, mul(count, size))
-    part = f"data[{begin} : {expression(scope, base)} + {whole}]"
+    begin, rounds = bare(expression(scope, base)), expression(scope, count)
+    part = f"data[{begin} : {expression(scope, base)} + {expression(scope, mul(count, size))}]"
     match first:
         case SetField(Place(lane), Load(type_, _, order)):
             number = size // WIDTH[type_]
-            each = f'_unpack_each("{"" if WIDTH[type_] == 1 else order}{number}{CODES[type_]}", {part})'
+            each = f"{scope.struct('<' if WIDTH[type_] == 1 else order, CODES[type_] * number, 'each')}({part})"
             names = [scope.element(lane, place) for place in range(number)]
-            return f"[[*each] for each in {each}]" if made is None else f"[{made(scope)} for {_targets(names)} in {each}]"
+            found = f"[[*each] for each in {each}]" if made is None else f"[{made(scope)} for {_targets(names)} in {each}]"
         case SetField(Place(lane)) if made is not None:
-            return f'[{made(scope)} for {_targets([scope.piece(lane, 0)])} in _unpack_each("{size}s", {part})]'
+            each = scope.struct("<", f"{size}s", "each")
+            found = f"[{made(scope)} for {_targets([scope.piece(lane, 0)])} in {each}({part})]"
         case _:
-            return f"_pieces(data, {begin}, {size}, {bare(expression(scope, count))})"
+            few = f"[*{scope.by_count('<', f'{size}s', 'pieces')}[{bare(rounds)}](data, {begin})]"
+            many = f"_pieces(data, {begin}, {size}, {bare(rounds)})"
+            is_few = isinstance(count, Const) and count.value < SOME
+            return few if is_few else f"{few} if {rounds} < {SOME} else {many}"
+    return found if isinstance(count, Const) else f"{found} if {rounds} else []"
 
 
 def _targets(names: list[str]) -> str:

@@ -202,9 +202,13 @@ def _rows_read(function: Function, loop: nodes.For) -> tuple[str, int] | None:
 
 def _rows(function: Function, loop: nodes.For, count: str, rows: str, least: int) -> None:
     """Rows that are read by one call, which fewer than the ``least`` are not."""
-    line = f"{function.scope.lanes.rows(function.scope.direct.loops[loop.variable])} += {rows}"
+    lane = function.scope.lanes.rows(function.scope.direct.loops[loop.variable])
+    line, lines, empty = f"{lane} += {rows}", function.writer.lines, f"{lane} = []"
     if not count or not least:
-        function.line(line)
+        is_first = bool(lines) and lines[-1].strip() == empty
+        if is_first:
+            lines.pop()
+        function.line(f"{lane} = {rows}" if is_first else line)
         return
     with function.writer.indented(f"if {count} >= {least}:"):
         function.line(line)

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Callable
 from struct import Struct
 from struct import iter_unpack as _unpack_each
 from struct import pack as _pack
@@ -65,12 +66,12 @@ _KEPT = 128
 class _ByCount(dict[int, Any]):
     """What reads or writes so many numbers of one type by one call, by their count: the struct module makes it where it is not kept."""
 
-    def __init__(self, code: str, method: str) -> None:
+    def __init__(self, code: Callable[[int], str], method: str) -> None:
         super().__init__()
         self.code, self.method = code, method
 
     def __missing__(self, count: int) -> Any:
         if len(self) >= _KEPT:
             self.clear()
-        found = self[count] = getattr(Struct(self.code.format(count)), self.method)
+        found = self[count] = getattr(Struct(self.code(count)), self.method)
         return found
