@@ -11,6 +11,7 @@ from rosetta_jit.generate.c.header import made
 from rosetta_jit.generate.c.state import MEMBERS
 from rosetta_jit.generate.c.texts import literal
 from rosetta_jit.generate.c.words import C_TYPES
+from rosetta_jit.generate.cpp.decoding.at_once import is_called
 from rosetta_jit.generate.cpp.encoding.reading import writes_apart
 from rosetta_jit.generate.cpp.objects.classes import classes
 from rosetta_jit.generate.unit import Unit, wires_of
@@ -40,6 +41,11 @@ class AtOnce:
     puts: str = ""
     puts_empty: str = ""
 
+    @property
+    def is_called(self) -> bool:
+        """Whether the statements that read a message are those of a function that is called."""
+        return is_called(self.reads_lengths, self.reads_empty)
+
 
 def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
     """The text of the header; ``there`` is what stands in it of the codec's functions."""
@@ -68,8 +74,8 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
             Template(_declarations()[f"{name}_private"]).substitute(statements=text.rstrip())
             for name, text in (
                 ("read_empty_at_once", there.reads_empty),
-                ("read_at_once", "" if _is_called(there) else there.reads),
-                ("read_at_once_called", there.reads if _is_called(there) else ""),
+                ("read_at_once", "" if there.is_called else there.reads),
+                ("read_at_once_called", there.reads if there.is_called else ""),
                 ("decode_any", "any" if "borrow" in unit.kernels else ""),
                 ("put_empty_at_once", there.puts_empty),
                 ("put_at_once", there.puts),
@@ -82,11 +88,6 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
         around="\n".join(Template(text).substitute(words) for _, text in around),
     )
-
-
-def _is_called(there: AtOnce) -> bool:
-    """Whether what reads a message is called, so that what reads an empty one stays short enough to stand in place of a call."""
-    return there.reads_empty != "" and there.reads_lengths > 1
 
 
 def _state(unit: Unit) -> str:

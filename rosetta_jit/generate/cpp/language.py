@@ -38,9 +38,12 @@ def files(unit: Unit) -> dict[str, str]:
     parts = parts_of(unit, lambda kernel, lanes, role: _printed(unit, manners, kernel, lanes, role, inner), dialect="c++")
     decoder = decoder_of(unit, manners, unit.kernels["borrow"], parts.lanes, inner) if "borrow" in unit.kernels else None
     short = decoder if decoder is None or inner is None else inner.without(*decoder)
+    reads_empty, apart = "" if short is None else of_no_elements_at_once(*short), short
+    if inner is None and short is not None:
+        apart = open_decoder_of(unit, manners, parts.lanes)
     there = AtOnce(
-        *(("", 0) if short is None else at_once(*short, short if inner is not None else open_decoder_of(unit, manners, parts.lanes))),
-        "" if short is None else of_no_elements_at_once(*short),
+        *(("", 0) if short is None or apart is None else at_once(*short, apart, reads_empty)),
+        reads_empty,
         *(put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else ("", "")),
     )
     return {

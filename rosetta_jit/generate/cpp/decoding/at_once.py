@@ -15,7 +15,7 @@ from rosetta_jit.generate.c.printing.statements import print_block
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
 from rosetta_jit.generate.cpp.passes.checks import fewer
-from rosetta_jit.generate.cpp.passes.empty_lists import lanes_of_empty_lists, lanes_of_nothing, of_empty_lists, of_nothing
+from rosetta_jit.generate.cpp.passes.empty_lists import lanes_of_empty_lists, lanes_of_nothing, lists_of, of_empty_lists, of_nothing
 from rosetta_jit.generate.cpp.passes.few_elements import lanes_of_few_elements, of_few_elements
 from rosetta_jit.generate.cpp.passes.opened import without_asking, without_counting
 from rosetta_jit.generate.passes.reachable import read_names
@@ -27,17 +27,26 @@ from rosetta_jit.kernel.walk import statements
 from rosetta_jit.startup.dataclass import replace
 
 
-def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes]) -> tuple[str, int]:
+def is_called(lengths: int, reads_empty: str) -> bool:
+    """Whether a decoder that sets so many texts, arrays and lists is called, not the one that ``reads_empty`` messages."""
+    return reads_empty != "" and lengths > 1
+
+
+def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes], reads_empty: str) -> tuple[str, int]:
     """The statements of such a decoder, empty where there is none, and how many texts, arrays and lists they set that have a length.
 
-    ``lanes`` say how the kernel reaches the object, ``apart`` are kernel and lanes of a decoder that opens all lists.
+    ``lanes`` say how the kernel reaches the object, ``apart`` are kernel and lanes of a decoder that opens all lists. ``reads_empty`` are
+    the statements of a decoder of messages without elements. None is called that needs lists to be empty: other messages would cost a call
+    more.
     """
     found = _reached(kernel, lanes, *apart)
     if found is None or two_roundings((kernel,)):
         return "", 0
-    checks, effects, lanes = found
-    lengths = sum(_has_length(lanes, each) for each in effects)
-    return _printed(kernel, fewer(checks, is_sized=lengths == 0), effects, lanes), lengths
+    checks, effects, reached, are_empty = found
+    lengths = sum(_has_length(reached, each) for each in effects)
+    if are_empty and is_called(lengths, reads_empty):
+        return "", 0
+    return _printed(kernel, fewer(checks, is_sized=lengths == 0), effects, reached), lengths
 
 
 def of_no_elements_at_once(kernel: Kernel, lanes: Lanes) -> str:
@@ -65,15 +74,15 @@ def _printed(kernel: Kernel, checks: nodes.Block, effects: nodes.Block, lanes: L
     return function.writer.text() if is_free and "given_object" in scope.parameters else ""
 
 
-def _reached(kernel: Kernel, lanes: Lanes, apart: Kernel, open_lanes: Lanes) -> tuple[nodes.Block, nodes.Block, Lanes] | None:
-    """What the decoder checks and what it sets, of lists that are empty or have few elements, and how it reaches the object."""
+def _reached(kernel: Kernel, lanes: Lanes, apart: Kernel, open_lanes: Lanes) -> tuple[nodes.Block, nodes.Block, Lanes, bool] | None:
+    """What the decoder checks and what it sets, how it reaches the object, and whether lists of the message must be empty."""
     body = without_counting(without_asking(apart, open_lanes.opened), open_lanes.given).bodies[0]
     ways = (
-        (of_few_elements(body, open_lanes), lanes_of_few_elements(open_lanes)),
-        (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes)),
+        (of_few_elements(body, open_lanes), lanes_of_few_elements(open_lanes), False),
+        (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes), bool(lists_of(lanes))),
     )
-    found = ((straightened, reached) for each, reached in ways if (straightened := _straightened(each)) is not None)
-    return next(((*parts, reached) for parts, reached in found), None)
+    found = ((parts, reached, are_empty) for each, reached, are_empty in ways if (parts := _straightened(each)) is not None)
+    return next(((*parts, reached, are_empty) for parts, reached, are_empty in found), None)
 
 
 def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
