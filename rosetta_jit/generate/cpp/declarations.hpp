@@ -53,6 +53,13 @@ $statements
         if (empty_size >= 0) {
             return static_cast<std::size_t>(empty_size);
         }
+/* == put_each_private == */
+    /* Writes elements of a list, of which there is one at least, and says where they end; a negative number where anything is wrong. */
+    ROSETTA_JIT_APART static std::int64_t $name(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end, $parameters)
+    {
+$statements
+    }
+
 /* == put_empty_at_once_private == */
     /* Writes a message without elements that have texts or lists; a negative number where it is another one, or anything is wrong. */
     static std::int64_t put_empty_at_once(const holder &given_object, unsigned char *__restrict bytes, std::int64_t end)

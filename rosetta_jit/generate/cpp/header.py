@@ -32,7 +32,8 @@ RESET = (
 class AtOnce:
     """The statements that read a message in the header, or an empty one, and those that write one, or such; empty where it cannot be.
 
-    ``reads_lengths`` is how many texts, arrays and lists are set by those that read one.
+    ``reads_lengths`` is how many texts, arrays and lists are set by those that read one. ``puts_each`` are the functions for elements of
+    lists that those which write call: the name, the parameters besides the shared ones, and the statements of each.
     """
 
     reads: str = ""
@@ -40,6 +41,7 @@ class AtOnce:
     reads_empty: str = ""
     puts: str = ""
     puts_empty: str = ""
+    puts_each: tuple[tuple[str, str, str], ...] = ()
 
     @property
     def is_called(self) -> bool:
@@ -70,24 +72,29 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
         includes="\n".join(lines),
         classes=f"{own}\n/* What is filled and read. */\nusing holder = {named};\n",
         declarations="\n".join(_declared(unit, there)),
-        hidden="".join(
-            Template(_declarations()[f"{name}_private"]).substitute(statements=text.rstrip())
-            for name, text in (
-                ("read_empty_at_once", there.reads_empty),
-                ("read_at_once", "" if there.is_called else there.reads),
-                ("read_at_once_called", there.reads if there.is_called else ""),
-                ("decode_any", "any" if "borrow" in unit.kernels else ""),
-                ("put_empty_at_once", there.puts_empty),
-                ("put_at_once", there.puts),
-                ("encode_any", "any" if "encode" in unit.kernels else ""),
-            )
-            if text
-        ),
+        hidden=_hidden(unit, there),
         state=_state(unit),
         written="    std::unique_ptr<memory> written_;\n" if writes_apart(unit) else "",
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
         around="\n".join(Template(text).substitute(words) for _, text in around),
     )
+
+
+def _hidden(unit: Unit, there: AtOnce) -> str:
+    """The codec's functions that are its own."""
+    known = _declarations()
+    each = Template(known["put_each_private"])
+    loops = [each.substitute(name=name, parameters=more, statements=text.rstrip()) for name, more, text in there.puts_each]
+    parts = (
+        ("read_empty_at_once", there.reads_empty),
+        ("read_at_once", "" if there.is_called else there.reads),
+        ("read_at_once_called", there.reads if there.is_called else ""),
+        ("decode_any", "any" if "borrow" in unit.kernels else ""),
+        ("put_empty_at_once", there.puts_empty),
+        ("put_at_once", there.puts),
+        ("encode_any", "any" if "encode" in unit.kernels else ""),
+    )
+    return "".join([*loops, *(Template(known[f"{name}_private"]).substitute(statements=text.rstrip()) for name, text in parts if text)])
 
 
 def _state(unit: Unit) -> str:

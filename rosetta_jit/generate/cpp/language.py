@@ -44,7 +44,7 @@ def files(unit: Unit) -> dict[str, str]:
     there = AtOnce(
         *(("", 0) if short is None or apart is None else at_once(*short, apart, reads_empty)),
         reads_empty,
-        *(put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else ("", "")),
+        *(put_at_once(unit, manners, parts.lanes) if "encode" in unit.kernels else ("", "", ())),
     )
     return {
         f"{unit.name}.hpp": header(unit, manners, there),

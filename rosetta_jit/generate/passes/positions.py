@@ -98,6 +98,12 @@ def difference(one: nodes.Expr, other: nodes.Expr) -> nodes.Expr | None:
     return sum_of(parts, sums[0][1] - sums[1][1])
 
 
+def terms_of(expr: nodes.Expr) -> list[nodes.Expr]:
+    """The terms of a sum but its constant; none of what is no sum."""
+    found = _sum(expr)
+    return [] if found is None else [*Counter(dict(found[0])).elements()]
+
+
 def sum_of(parts: Iterable[nodes.Expr], constant: int) -> nodes.Expr:
     """A sum as an expression."""
     found: nodes.Expr | None = None

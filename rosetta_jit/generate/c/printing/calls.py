@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.printing.expressions import expression
-from rosetta_jit.generate.c.printing.function import Function, fail, fail_if, failed
+from rosetta_jit.generate.c.printing.function import Callable, Function, fail, fail_if, failed
 from rosetta_jit.generate.c.printing.room import moved
 from rosetta_jit.generate.c.printing.varint_loops import REPLACED, replaced, sooner
 from rosetta_jit.generate.c.words import C_TYPES
@@ -48,6 +48,9 @@ def print_call(function: Function, call: nodes.Call) -> None:
         _length(function, call)
         return
     routine = function.routines[call.routine]
+    if routine.returns:
+        _returned(function, call, routine)
+        return
     for result in call.results:
         function.line(f"{C_TYPES[result.type]} {scope.locals.identifier(result.name)} = 0;")
     found = (f"&{scope.locals.identifier(result.name)}" for result in call.results)
@@ -71,6 +74,16 @@ def print_call(function: Function, call: nodes.Call) -> None:
         function.line("}")
     with function.block(f"if ({problem} != 0)"):
         failed(function, _site(problem, tuple(map(function.site, call.sites))), "failure->offset", call.indices, None)
+
+
+def _returned(function: Function, call: nodes.Call, routine: Callable) -> None:
+    """A call whose result is what the function returns."""
+    scope = function.scope
+    found = scope.locals.identifier(call.results[0].name)
+    given = (*map(scope.takes, routine.shared), *(bare(expression(scope, each)) for each in call.arguments))
+    function.line(f"const int64_t {found} = {routine.name}({', '.join(given)});")
+    with function.block(f"if ({found} < 0)"):
+        function.line(f"return {found};")
 
 
 def positions_found(function: Function, call: nodes.Call) -> frozenset[int]:

@@ -28,12 +28,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Callable:
-    """A routine as a C function: its name, what it takes besides its own parameters, and which results are positions of the message."""
+    """A routine as a C function: its name, what it takes besides its own parameters, and which results are positions of the message.
+
+    Where ``returns``, its only result is what it returns, a negative number where it fails.
+    """
 
     name: str
     shared: tuple[str, ...]
     fails: bool
     positions: frozenset[int] = frozenset()
+    returns: bool = False
 
 
 @dataclass(slots=True)

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Namespace
 from rosetta_jit.generate.c.holder.lanes import Given, Lanes
-from rosetta_jit.generate.c.printing.function import Function
+from rosetta_jit.generate.c.printing.function import Callable, Function
 from rosetta_jit.generate.c.printing.scope import Scope
 from rosetta_jit.generate.c.printing.statements import print_block
 from rosetta_jit.generate.c.support import function_names
+from rosetta_jit.generate.c.words import C_TYPES
 from rosetta_jit.generate.cpp.encoding.messages_within import descents_of
 from rosetta_jit.generate.cpp.encoding.reading import reader
 from rosetta_jit.generate.cpp.encoding.shown_elements import Shown, shown_elements
@@ -22,6 +23,7 @@ from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are
 from rosetta_jit.generate.cpp.objects.always import is_plain, numbers, spans
 from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.cpp.passes.empty_lists import NOT_EMPTY, of_no_elements
+from rosetta_jit.generate.cpp.passes.loops_apart import Apart, loops_apart
 from rosetta_jit.generate.cpp.passes.measured_first import measured_first
 from rosetta_jit.generate.cpp.passes.numbers_apart import with_numbers_apart
 from rosetta_jit.generate.passes.decided import decided
@@ -30,6 +32,7 @@ from rosetta_jit.generate.passes.roundings import two_roundings
 from rosetta_jit.generate.passes.undamaged import undamaged_kernel
 from rosetta_jit.generate.unit import Unit, wires_of
 from rosetta_jit.kernel import nodes
+from rosetta_jit.kernel.ir import Kernel
 from rosetta_jit.kernel.nodes import Block, Expr
 from rosetta_jit.kernel.passes.fold import folded
 from rosetta_jit.kernel.rewrite import with_blocks, with_expressions, with_operands
@@ -45,6 +48,8 @@ if TYPE_CHECKING:
 OBJECT = "given_object"
 FEW_LINES = 60
 """What compilers put in place of a call."""
+SHARED_BY_LOOPS = ("given_object", "bytes", "end")
+"""What functions of loops are given, besides what these need."""
 FILL = nodes.Reserve | nodes.Call | nodes.HostCall
 LEAVE = FILL | nodes.Return
 """Statements that fill rows or call a function, and those that leave the function."""
@@ -65,21 +70,43 @@ class Object:
     named: Mapping[str, str]
 
 
-def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> tuple[str, str]:
-    """The statements of such an encoder, empty where there is none; and those of one for messages without elements that have texts.
+@dataclass(frozen=True, slots=True)
+class Puts:
+    """The statements of such an encoder, empty where there is none, and the functions that it calls, as `AtOnce` has them."""
 
-    There are these where a compiler would call the first ones, as they are many; where those would be too many, they are all there is.
+    text: str = ""
+    each: tuple[tuple[str, str, str], ...] = ()
+
+
+def put_at_once(unit: Unit, manners: Manners, lanes: Lanes) -> tuple[str, str, tuple[tuple[str, str, str], ...]]:
+    """The statements of such an encoder; of one for messages without elements that have texts; and the functions that it calls.
+
+    There are the second ones where a compiler would call the first ones, as they are many; where those would be too many, they are all.
     """
     if wires_of(unit) or two_roundings((unit.kernels["encode"],)):
-        return "", ""
+        return "", "", ()
     walk = reader(unit, lanes, manners)
     puts, puts_empty = (_printed(unit, _object(walk, is_any_shown=each)) for each in (True, False))
-    if puts in ("", puts_empty):
-        return puts_empty, ""
-    return puts, "" if puts.count("\n") <= FEW_LINES else puts_empty
+    if puts.text in ("", puts_empty.text):
+        return puts_empty.text, "", puts_empty.each
+    return puts.text, "" if puts.text.count("\n") <= FEW_LINES else puts_empty.text, puts.each
 
 
-def _printed(unit: Unit, reached_by: Object) -> str:
+def _printed(unit: Unit, reached_by: Object) -> Puts:
+    body = _body(unit, reached_by)
+    if sum(1 for _ in statements(body)) > MOST or not body:
+        return Puts()
+    kernel, lanes = unit.kernels["encode"], reached_by.lanes
+    body, loops = loops_apart(body, lambda lane: f"put_each_{lanes.rows(lane)}")
+    routines = {each.name: Callable(each.name, SHARED_BY_LOOPS, fails=False, returns=True) for each in loops}
+    text, scope = _function(reached_by, kernel, body, routines)
+    each = tuple(_of_loop(reached_by, kernel, loop, routines) for loop in loops)
+    is_free = frozenset(scope.parameters) == PARAMETERS and all(map(_is_free, (scope, *(inner for _, inner in each))))
+    return Puts(text, tuple(there for there, _ in each)) if is_free else Puts()
+
+
+def _body(unit: Unit, reached_by: Object) -> Block:
+    """The statements that look at the object first; none where they do more than to write it."""
     kernel, lanes, lists = unit.kernels["encode"], reached_by.lanes, reached_by.lists
     descents = descents_of(unit).get("encode")
     kernel = undamaged_kernel(kernel) if descents is None else replace(kernel, bodies=(descents.body,))
@@ -88,12 +115,23 @@ def _printed(unit: Unit, reached_by: Object) -> str:
     body = _with_zeros(tuple(_checked(kernel.bodies[0], lists)), {*reached_by.starts, *lists, *(at + 8 for at in empty)})
     body = reached(decided((*map(_is_empty, empty), *of_no_elements(body, () if descents is None else descents.visits))))
     if not _is_straight(body) or _copies(body, {*lanes.opened, *lanes.within}):
-        return ""
-    body = measured_first(body, reached_by.counts)
-    if sum(1 for _ in statements(body)) > MOST:
-        return ""
-    scope = Scope(Namespace(lanes.words() | function_names() | {"data", *reached_by.named}), lanes, set(), set(), set())
-    function = Function(scope, kernel.sites, {}, read=read_names(body), otherwise="return -1;")
+        return ()
+    return measured_first(body, reached_by.counts)
+
+
+def _of_loop(reached_by: Object, kernel: Kernel, loop: Apart, routines: Mapping[str, Callable]) -> tuple[tuple[str, str, str], Scope]:
+    """The function of a loop: its name, its parameters and its statements."""
+    text, scope = _function(reached_by, kernel, loop.body, routines)
+    parameters = (f"{C_TYPES[each.type]} {scope.locals.identifier(each.name)}" for each in loop.parameters)
+    return (loop.name, ", ".join(parameters), text), scope
+
+
+def _function(reached_by: Object, kernel: Kernel, body: Block, routines: Mapping[str, Callable]) -> tuple[str, Scope]:
+    """Statements as a function has them, and what they need."""
+    lanes = reached_by.lanes
+    words = lanes.words() | function_names() | {"data", *reached_by.named, *routines}
+    scope = Scope(Namespace(words), lanes, set(), set(), set())
+    function = Function(scope, kernel.sites, routines, read=read_names(body), otherwise="return -1;")
     function.writer.depth = 2
     for stmt in body:
         if isinstance(stmt, nodes.Require | nodes.Expect | nodes.Let):
@@ -101,19 +139,32 @@ def _printed(unit: Unit, reached_by: Object) -> str:
         else:
             print_block(function, (stmt,))
     function.writer.lines[:0] = _begun(reached_by, scope, function.writer.lines)
-    is_free = frozenset(scope.parameters) == PARAMETERS and all(map(is_shared, scope.support)) and not scope.tables
-    return function.writer.text() if is_free else ""
+    return function.writer.text(), scope
+
+
+def _is_free(scope: Scope) -> bool:
+    """Whether statements need no more than what such an encoder is given."""
+    return frozenset(scope.parameters) <= PARAMETERS and all(map(is_shared, scope.support)) and not scope.tables
 
 
 def _begun(reached_by: Object, scope: Scope, lines: Collection[str]) -> list[str]:
     """What is declared before the statements: pointers to arrays and lists, and the types of lists within these."""
-    lanes = reached_by.lanes
-    arrays = [lane for lane in sorted(scope.touched) if lane in lanes.given]
+    lanes, named = reached_by.lanes, _used(reached_by.named, lines)
+    shown = {lane for lane in lanes.opened if any(f"{lanes.rows(lane)}[" in each for each in named.values())}
+    arrays = [lane for lane in sorted(scope.touched | shown) if lane in lanes.given]
     types = ("const auto " if lane in lanes.opened else f"const {lanes.type(lane)} *const " for lane in arrays)
     names = [f"{type_}{lanes.rows(lane)}" for lane, type_ in zip(arrays, types, strict=True)]
     begun = [f"        {name} = {lanes.member(lane)};" for name, lane in zip(names, arrays, strict=True)]
-    used = (name for name in reached_by.named if any(f"{name}::at(" in line for line in lines))
-    return [*begun, *(f"        using {name} = {reached_by.named[name]};" for name in used)]
+    return [*begun, *(f"        using {name} = {type_};" for name, type_ in named.items())]
+
+
+def _used(named: Mapping[str, str], lines: Collection[str]) -> dict[str, str]:
+    """The types of lists that lines name, or that those name."""
+    used = list[str]()
+    for name in reversed([*named]):
+        if any(f"{name}::at(" in line for line in (*lines, *(named[each] for each in used))):
+            used.append(name)
+    return {name: named[name] for name in reversed(used)}
 
 
 def _object(walk: Walk, *, is_any_shown: bool) -> Object:
