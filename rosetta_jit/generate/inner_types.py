@@ -1,4 +1,4 @@
-"""The types within a message, each of which a language has to call something.
+"""The types within a message, each of which a language has to call something, and what their schema says of their fields.
 
 Also those that a schema declares within a field, without a name, as YARP's bottles within lists.
 """
@@ -102,6 +102,18 @@ def _reached(schema: Schema, type_: str) -> dict[str, None]:
         inner = [each for field in declared.fields for each in _refs(field.type)] if isinstance(declared, Struct) else []
         pending += [(each, False) for each in reversed(inner)]
     return found
+
+
+def said_of(field: Field) -> str:
+    """A field's comment and its unit, as far as the schema has these."""
+    return " ".join(part for part in (field.doc, f"[{field.unit}]" if field.unit else "") if part)
+
+
+def said_of_fields(unit: Unit) -> dict[tuple[str, str], str]:
+    """The same of all fields within the message, by the names of struct and field; of those of which there is something to say."""
+    structs = (unit.schema.types[name] for name in reached_types(unit))
+    fields = ((struct.name, field) for struct in structs if isinstance(struct, Struct) for field in struct.fields)
+    return {(name, field.name): said for name, field in fields if (said := said_of(field))}
 
 
 def _refs(type_: Type) -> Iterator[str]:

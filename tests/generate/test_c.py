@@ -217,6 +217,20 @@ def test_small_code_of_a_machine_that_aligns_its_numbers(tmp_path, encoding):
     assert found == [expected(decode, encode, each) for each in messages]
 
 
+def test_the_header_says_what_the_schema_says_of_fields():
+    text = """syntax = "proto3"; message Arm {
+  // Where the arm is.
+  double angle = 1;
+  bool is_on = 2; // whether it moves
+  repeated double gains = 3; /* of its controller */
+}"""
+    request = type_request("decode", "Arm", {"schema": {"arm.proto": text}})
+    header = generated(request, "c", ("decode",), "arm", NO_WISHES)["arm.h"]
+    assert "    double angle; /* Where the arm is */" in header
+    assert "    uint8_t is_on; /* whether it moves; 0, or else true */" in header
+    assert "    arm_span gains; /* of its controller; in `gains` */" in header
+
+
 def test_texts_end_neither_literals_nor_comments():
     from rosetta_jit.generate.c.texts import comment, literal
 

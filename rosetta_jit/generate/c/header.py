@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 from string import Template
+from textwrap import shorten
 from typing import get_args
 
 from rosetta_jit.errors import Kind
@@ -18,6 +19,8 @@ from rosetta_jit.generate.c.words import C_ROWS, C_TYPES
 from rosetta_jit.generate.unit import MADE, Purpose, Unit, kind_of, wire_of
 
 WORD = re.compile(r"\w+")
+MAX_SAID = 120
+"""Characters of a comment of the schema that stand beside a member."""
 STATUSES = ("ok", "full", *get_args(Kind))
 
 OF_WIRE = """/*
@@ -98,15 +101,16 @@ def _member(name: str, lanes: Lanes, member: Member) -> str:
             text = f"{row_type(name, member.type)} {member.identifier};"
         case Struct():
             text = f"{member.type.identifier} {member.identifier};"
-    said = member.comment
+    said = [shorten(member.comment, MAX_SAID, placeholder=" (...)").rstrip(". ")]
     if member.lanes:
         of_path = "" if len(member.lanes) == 1 else "the lane of its path, as "
-        said = f"{said}; in {of_path}`{lanes.rows(member.lanes[0])}`".removeprefix("; ")
+        said.append(f"in {of_path}`{lanes.rows(member.lanes[0])}`")
     if member.type == "bool":
-        said = "0, or else true"
+        said.append("0, or else true")
     if member.presence is not None:
-        said = f"{said}; only if its bit {member.presence} is set".removeprefix("; ")
-    return f"{text} {comment(said)}" if said else text
+        said.append(f"only if its bit {member.presence} is set")
+    told = "; ".join(filter(None, said))
+    return f"{text} {comment(told)}" if told else text
 
 
 def _members(unit: Unit, lanes: Lanes, hidden: int) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
 from rosetta_jit.generate.constants import constants_of, number_of, scalar_of_constant
-from rosetta_jit.generate.inner_types import reached_types
+from rosetta_jit.generate.inner_types import reached_types, said_of
 from rosetta_jit.generate.lisp.expressions import constant as number
 from rosetta_jit.generate.lisp.lines import Lines
 from rosetta_jit.generate.lisp.texts import doc, literal
@@ -147,7 +147,7 @@ def _class(lines: Lines, classes: Classes, symbol: str, struct: Struct) -> None:
 
 
 def _slot(classes: Classes, struct: Struct, each: Field) -> list[str]:
-    said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
+    said = said_of(each)
     return _options(classes.slot(struct, each.name), slot_type(classes, each.type), default(classes, each.type), said)
 
 

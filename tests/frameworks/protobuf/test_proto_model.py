@@ -119,6 +119,28 @@ def test_leading_comment_is_the_doc(before, doc):
     assert found.fields[-1].doc == doc
 
 
+@pytest.mark.parametrize(
+    ("behind", "doc"),
+    [
+        ("; // Of a.", "Of a."),
+        (" [deprecated = true];  /* Of a. */", "Of a."),
+        ("; /// Of a.", "Of a."),
+        (";\n// Of b.", ""),
+        ("; optional int32 c = 3; // Of c.", ""),
+        ("; /* Of\n all. */", ""),
+        (";", ""),
+    ],
+)
+def test_a_comment_behind_a_field_is_its_doc(behind, doc):
+    found = types(f"message M {{ optional int32 a = 1{behind}\n}}")
+    assert found["M"].fields[0].doc == doc
+
+
+def test_a_comment_before_a_field_goes_before_one_behind_it():
+    found = types("message M {\n  // Before.\n  optional int32 a = 1; // Behind.\n  optional int32 b = 2;\n}")["M"]
+    assert [each.doc for each in found.fields] == ["Before.", ""]
+
+
 def test_spans_point_at_names():
     text = 'syntax = "proto2"; message Mess { optional int32 apple = 1; }'
     struct = parse(Source("a.proto", text), lambda _: None).types["Mess"]

@@ -50,7 +50,7 @@ typedef struct torso_state_span {
 /* rst.kinematics.JointAngles */
 typedef struct torso_state_JointAngles {
     torso_state_span unknown; /* fields that the schema does not know, as they came; in `unknown` */
-    torso_state_span angles; /* in `angles` */
+    torso_state_span angles; /* Joint angles, in rad; in `angles` */
 } torso_state_JointAngles;
 
 /* A message. Its arrays and texts lie in lanes, whose memory the caller gives: `rows` with room for `capacity`, of which `used` are taken. */

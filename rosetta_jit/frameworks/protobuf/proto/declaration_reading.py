@@ -81,7 +81,7 @@ class DeclarationReader(ValueReader):
             label_span=self.at(label) if label else None,
             group=group,
             options=self.settings(node),
-            doc=self.doc(node),
+            doc=self.doc_of_field(node),
             span=self.at(tokens[-2]),
         )
 

@@ -129,7 +129,12 @@ class ValueReader:
         return self.at(first).to(self.at(last))
 
     def doc(self, node: Node) -> str:
+        """The comment before a declaration."""
         return leading_comment(self.source.text, ends(node)[0].start_pos)
+
+    def doc_of_field(self, node: Node) -> str:
+        """The comment before a field, or else the one that follows on its line."""
+        return self.doc(node) or trailing_comment(self.source.text, ends(node)[1].end_pos)
 
 
 def all_of(node: Node, *rules: str) -> Iterator[Node]:
@@ -171,6 +176,15 @@ def leading_comment(text: str, start: int) -> str:
     if body.endswith("*/"):
         return _block_comment(body)
     return ""
+
+
+def trailing_comment(text: str, end: int) -> str:
+    """The text of the comment behind the semicolon of the statement whose last word ends at ``end``; empty where there is none."""
+    line = text[end : end + MAX_COMMENT].partition("\n")[0]
+    behind = line.partition(";")[2].lstrip(" \t")
+    if behind.startswith("//"):
+        return behind.lstrip("/").strip()
+    return behind[2:].partition("*/")[0].strip("* \t") if behind.startswith("/*") and "*/" in behind else ""
 
 
 def _line_comments(lines: list[str]) -> str:

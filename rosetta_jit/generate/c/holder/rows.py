@@ -9,7 +9,7 @@ a message may have other values than 0 and 1, which a C `bool` must not.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import count
 from typing import assert_never
 
@@ -82,11 +82,12 @@ def members_of(struct: Struct) -> list[Member]:
 
 @dataclass(slots=True)
 class Structs:
-    """The structs of a layout, each before those that contain it."""
+    """The structs of a layout, each before those that contain it; ``said`` is what the schema says of fields, by struct and name."""
 
     prefix: str
     names: Namespace
-    made: dict[tuple[object, ...], Struct]
+    said: Mapping[tuple[str, str], str]
+    made: dict[tuple[object, ...], Struct] = field(default_factory=dict[tuple[object, ...], "Struct"])
 
     def element(self, lane: Lane, path: str) -> Element:
         """The type of a lane's rows."""
@@ -121,7 +122,8 @@ class Structs:
             members.append(Member("unknown", row.unknown.offset - row.offset, SPAN, comment=comment, lanes=(row.unknown.lane,)))
         for each in row.members:
             identifier = _own(names.identifier(each.name))
-            members.append(self._member(identifier, each.slot, row.offset, f"{path}_{each.name}", each.presence))
+            member = self._member(identifier, each.slot, row.offset, f"{path}_{each.name}", each.presence)
+            members.append(replace(member, comment=self.said.get((row.struct, each.name), "")))
         if not members:
             members.append(Member("nothing", 0, "u8", 8, "C has no empty struct"))
         simple = re.split(r"[./:]+", row.struct)[-1]

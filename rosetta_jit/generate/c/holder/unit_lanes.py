@@ -12,6 +12,7 @@ from rosetta_jit.generate.c.holder.lanes import OWN_WORDS, Lane, Lanes
 from rosetta_jit.generate.c.holder.rows import Structs, elements_of, paths_of
 from rosetta_jit.generate.c.support import function_names
 from rosetta_jit.generate.c.words import RESERVED, of_unit
+from rosetta_jit.generate.inner_types import said_of_fields
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import UNKNOWN, Number
 from rosetta_jit.model.layout import Lane as LayoutLane
@@ -20,7 +21,7 @@ from rosetta_jit.startup.dataclass import replace
 
 def own_lanes(unit: Unit) -> tuple[Structs, list[Lane]]:
     """The holder's, and the structs of their rows."""
-    structs = Structs(unit.name, Namespace(RESERVED | words_of(unit) | {f"{unit.name}_source"}), {})
+    structs = Structs(unit.name, Namespace(RESERVED | words_of(unit) | {f"{unit.name}_source"}), said_of_fields(unit))
     named = _named(_told_apart(unit.layout.lanes), unit.name)
     elements = elements_of(unit.layout, structs, tuple(name for name, _ in named))
     return structs, [Lane(*names, lane.stride, element) for names, lane, element in zip(named, unit.layout.lanes, elements, strict=True)]

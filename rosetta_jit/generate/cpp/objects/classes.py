@@ -12,7 +12,7 @@ from rosetta_jit.generate.c.texts import comment
 from rosetta_jit.generate.c.words import RESERVED, of_unit
 from rosetta_jit.generate.constants import constants_of, number_of
 from rosetta_jit.generate.cpp.objects.names import OWN_WORDS, member_names
-from rosetta_jit.generate.inner_types import reached_types
+from rosetta_jit.generate.inner_types import reached_types, said_of
 from rosetta_jit.model.recursive_structs import recursive_structs
 from rosetta_jit.model.types import (
     Array,
@@ -91,7 +91,7 @@ def _class(identifier: str, struct: Struct, names: dict[str, str], recursive: fr
 def _field(field: Field, member: str, kind: str) -> str:
     is_bare = isinstance(field.type, Bool | Int | Float | Ref) or kind.startswith("std::array")
     zero = "{}" if is_bare and not kind.startswith("std::unique") else ""
-    said = " ".join(part for part in (field.doc, f"[{field.unit}]" if field.unit else "") if part)
+    said = said_of(field)
     return f"{kind} {member}{zero};{f' {comment(said)}' if said else ''}"
 
 

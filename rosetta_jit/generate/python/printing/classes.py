@@ -12,7 +12,7 @@ from typing import assert_never
 
 from rosetta_jit.backends.printing import Namespace, class_name
 from rosetta_jit.generate.constants import constants_of
-from rosetta_jit.generate.inner_types import reached_types
+from rosetta_jit.generate.inner_types import reached_types, said_of
 from rosetta_jit.generate.unit import Unit, wire_of
 from rosetta_jit.model.layout import scalar_of
 from rosetta_jit.model.types import Array, Bool, Bytes, Constant, Enum, Float, Int, Map, Optional, Ref, String, Struct, Type, Union
@@ -133,7 +133,7 @@ def _class(identifier: str, struct: Struct, names: dict[str, str], unit: Unit, b
     for each, member in zip(struct.fields, members, strict=True):
         default = _default(each.type, names, unit, seen)
         lines.append(f"    {member}: {_beside(members, f'{_type(each.type, names, unit)} = {default}')}")
-        said = " ".join(part for part in (each.doc, f"[{each.unit}]" if each.unit else "") if part)
+        said = said_of(each)
         lines += [f"    {_doc(said)}"] if said else []
     if struct.option("unknown"):
         declared = _beside(members, 'bytes = b""')
