@@ -29,6 +29,8 @@ def statement(scope: Scope, place: Place, value: Expr) -> str | None:
     for lane in {place.lane, straight.lane} & scope.lanes.opened:
         scope.rows(lane)
     scope.moved |= {straight.lane} & scope.lanes.opened
+    if straight.text:
+        scope.takes("bytes")
     scope.takes("given_object" if place.lane in {0, scope.lanes.subject, *scope.lanes.given} else "holder")
     words["index"] = place.row
     return Template(straight.statement).substitute({name: bare(expression(scope, each)) for name, each in words.items()})
@@ -39,7 +41,7 @@ def size_left(count: Expr) -> Expr | None:
     match count:
         case Binary("sub", Const(_, -1), size):
             return size
-        case Const(type_, -1):
-            return Const(type_, 0)
+        case Const(type_, int(number)) if number < 0:
+            return Const(type_, -1 - number)
         case _:
             return None

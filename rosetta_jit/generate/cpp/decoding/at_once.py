@@ -43,7 +43,7 @@ def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes], reads_emp
     if found is None or two_roundings((kernel,)):
         return "", 0
     checks, effects, reached, are_empty = found
-    lengths = sum(_has_length(reached, each) for each in effects)
+    lengths = sum(_has_length(reached, each) - _is_fixed(reached, each) for each in effects)
     if are_empty and is_called(lengths, reads_empty):
         return "", 0
     return _printed(kernel, fewer(checks, is_sized=lengths == 0), effects, reached), lengths
@@ -114,6 +114,16 @@ def _has_length(lanes: Lanes, stmt: nodes.Stmt) -> bool:
     """Whether a statement sets a text or an array, as long as the message says."""
     straight = lanes.straight.get((stmt.place.lane, stmt.place.offset)) if isinstance(stmt, nodes.SetField) else None
     return isinstance(stmt, nodes.Advance) or (straight is not None and straight.is_span)
+
+
+def _is_fixed(lanes: Lanes, stmt: nodes.Stmt) -> bool:
+    """Whether a statement says how many bytes these are, of which each message has as many."""
+    match stmt:
+        case nodes.SetField(nodes.Place(lane, _, offset), nodes.Const(_, int(count))) if count < -1:
+            text = lanes.straight.get((lane, offset - 8))
+            return text is not None and text.text
+        case _:
+            return False
 
 
 def _only_checks(block: nodes.Block) -> bool:

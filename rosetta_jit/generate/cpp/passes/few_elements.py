@@ -5,9 +5,10 @@ A list of few elements takes less time than a call does. One of many is read in 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
-from rosetta_jit.generate.c.holder.lanes import Given, Lanes
+from rosetta_jit.generate.c.holder.lanes import Given, Lanes, Straight
 from rosetta_jit.generate.cpp.passes.empty_lists import NOT_EMPTY
 from rosetta_jit.kernel import nodes
 from rosetta_jit.kernel.nodes import Block, Stmt
@@ -36,10 +37,17 @@ def of_few_elements(body: Block, lanes: Lanes) -> Block:
 def lanes_of_few_elements(lanes: Lanes) -> Lanes:
     """How such statements reach the object: rows are elements of its lists, which are declared where a list is opened."""
     opened = frozenset[int]().union(*_lists(lanes))
-    straight = {
-        at: replace(each, statement=f"auto const {each.statement}") if each.lane in opened else each for at, each in lanes.straight.items()
-    }
+    fields = Counter(lane for lane, _ in lanes.straight)
+    alone = frozenset(lane for lane in opened if fields[lane] == 1)
+    straight = {at: replace(each, statement=_statement(each, opened, is_alone=at[0] in alone)) for at, each in lanes.straight.items()}
     return replace(lanes, straight=straight, given={**lanes.given, **dict.fromkeys(opened, OPENED)}, packed={})
+
+
+def _statement(field: Straight, opened: frozenset[int], *, is_alone: bool) -> str:
+    """What opens a list, or sets a field of its elements: of a byte alone a compiler would make a call of the C library's function."""
+    if field.lane in opened:
+        return f"auto const {field.statement}"
+    return field.statement.replace("$value", "rosetta_jit::detail::one_of_few($value)") if is_alone else field.statement
 
 
 def _lists(lanes: Lanes) -> tuple[frozenset[int], frozenset[int]]:

@@ -1513,6 +1513,17 @@ struct has_data : std::bool_constant<is_repeated<Container>::value || shows_data
 
 constexpr std::size_t SHORT_TEXT = 16; /* below which strings need no memory of their own */
 
+/* A number of a loop that copies few. Where they are bytes, a compiler would call the C library's function in place of the loop. */
+template <class Number> ROSETTA_JIT_INLINE Number one_of_few(Number number) noexcept
+{
+#if defined(__GNUC__)
+    if constexpr (sizeof(Number) == 1) {
+        __asm__("" : "+r"(number));
+    }
+#endif
+    return number;
+}
+
 /* Numbers, or the bytes of a text, into a container. One of a fixed length takes as many as it has. */
 template <class Container, class Row> void assign(Container &&target, const Row *rows, std::int64_t count)
 {
