@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from rosetta_jit.generate.c.holder.lanes import Lanes
 from rosetta_jit.generate.passes.undamaged import undamaged_kernel
 from rosetta_jit.generate.python.decoding.late_objects import late_rows
-from rosetta_jit.generate.python.decoding.making import Make, arrays_of
+from rosetta_jit.generate.python.decoding.making import arrays_of
 from rosetta_jit.generate.python.decoding.making_late_rows import MakeLate
 from rosetta_jit.generate.python.decoding.sparse import OBJECT, attributes_of, begun, settings
 from rosetta_jit.generate.python.passes.borrowed import borrowed
@@ -36,7 +36,7 @@ class _Decoder:
     kernel: Kernel
     beside: dict[str, str] | None
 
-    def make(self, scope: Scope, beside: dict[str, str] | None = None) -> Make:
+    def make(self, scope: Scope, beside: dict[str, str] | None = None) -> MakeLate:
         return MakeLate(self.unit, scope, self.names, taken_lanes(self.kernel), beside)
 
     def made(self, scope: Scope, _: str) -> str:
@@ -49,8 +49,8 @@ class _Decoder:
         """Functions for rows that contain rows of their own type."""
         lines: list[str] = []
         for lane, struct in self.unit.layout.recursive:
-            text = self.make(scope).value(Ref(struct), self.unit.layout.lanes[lane].element, lane, "index")
-            lines += [f"def made_{scope.lanes.rows(lane)}(index):", f"    return {text}", ""]
+            made = self.make(scope).function_of(Ref(struct), lane)
+            lines += [f"def made_{scope.lanes.rows(lane)}(index):", *(f"    {line}" for line in made), ""]
         return lines
 
     def inner_names(self, scope: Scope) -> list[str]:

@@ -9,7 +9,7 @@ from rosetta_jit.generate.python.passes.direct import LateRow, groups_of
 from rosetta_jit.generate.python.printing.late_lists import lists_of, lists_of_message, maker_without_lists, name_without_lists, print_maker
 from rosetta_jit.generate.unit import Unit
 from rosetta_jit.model.layout import Row
-from rosetta_jit.model.types import Struct
+from rosetta_jit.model.types import Ref, Struct
 from rosetta_jit.startup.dataclass import dataclass, field
 
 LEAST = 16
@@ -17,9 +17,10 @@ LEAST = 16
 
 
 def late_rows(unit: Unit) -> dict[int, LateRow]:
-    """The types of rows with many lists, by the lanes of arrays of them."""
+    """The types of rows with many lists, by the lanes of arrays of them, and those of types that contain themselves."""
     found: dict[int, LateRow] = {}
-    for lane, type_ in arrays_of(unit).items():
+    recursive = {lane: Ref(struct) for lane, struct in unit.layout.recursive}
+    for lane, type_ in (arrays_of(unit) | recursive).items():
         struct, slot = unit.schema.resolve(type_), unit.layout.lanes[lane].element
         if isinstance(struct, Struct) and isinstance(slot, Row) and (lists := lists_of(struct, slot, unit, LEAST)):
             found[lane] = LateRow(struct, slot, lists)
@@ -46,7 +47,7 @@ def late_objects(unit: Unit, names: Mapping[str, str], decoder: str) -> Late:
     ]
     for lane, identifier, spans, maker in classes:
         without_lists = name_without_lists(identifier)
-        if (f"{maker_without_lists(identifier)}(" if maker else f", {without_lists}[") in decoder:
+        if spans and (f"{maker_without_lists(identifier)}(" if maker else f", {without_lists}[") in decoder:
             groups = groups_of(spans)
             table = f"{without_lists} = _ByLists({identifier}, {len(groups[0])})"
             lines |= {table: None, **({f"\n\n{maker}\n": None} if maker else {})}

@@ -27,6 +27,8 @@ class Make:
 
     ``functions`` are those that make lists and maps of the message out of rows, by their text: a comprehension within the decoder would
     make its locals slower. Without them these stand where they are used.
+
+    ``absent`` are lists of rows that have no element, by lane and offset.
     """
 
     unit: Unit
@@ -35,6 +37,7 @@ class Make:
     reserved: frozenset[int]
     functions: dict[str, str] | None = None
     depth: int = 0
+    absent: frozenset[tuple[int, int]] = frozenset()
 
     def value(self, type_: Type, slot: Slot, lane: int, row: str) -> str:
         """The value at a slot of a row."""
@@ -84,6 +87,8 @@ class Make:
 
     def unknown(self, slot: Span, lane: int, row: str) -> str:
         """The fields that the schema does not know."""
+        if (lane, slot.offset) in self.absent:
+            return 'b""'
         late, count = self.scope.direct.late_at(slot), self.count_of(slot, lane, row)
         there = count if late is None else self.scope.has_field(late.name)
         return f'{self._text("_bytes", slot, self.start_of(slot, lane, row), count)} if {there} else b""'
@@ -140,6 +145,8 @@ class Make:
         return f"{function}({self.scope.view(slot.lane, '')}, data, {start}, {count})"
 
     def sequence(self, type_: String | Bytes | Array | Map, slot: Span, lane: int, row: str) -> str:
+        if (lane, slot.offset) in self.absent:
+            return self._nothing(type_, slot)
         known = self._direct(type_, slot, lane, row)
         if known is not None:
             return known

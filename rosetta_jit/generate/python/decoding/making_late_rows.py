@@ -12,6 +12,7 @@ from rosetta_jit.generate.python.printing.classes import member_names
 from rosetta_jit.generate.python.printing.late_lists import fields_besides, maker_without_lists, set_groups
 from rosetta_jit.model.layout import Span
 from rosetta_jit.model.types import Array, Bytes, Map, String, Type
+from rosetta_jit.startup.dataclass import replace
 
 MADE = "each"
 """The local for an object that is being made."""
@@ -24,7 +25,7 @@ class MakeLate(Make):
 
     def row(self, type_: Type, lane: int, index: str) -> str:
         value = Make.row(self, type_, lane, index)
-        late = self.scope.direct.late_rows.get(lane)
+        late = self.scope.direct.late_rows.get(lane) if self.unit.layout.lanes[lane].links is None else None
         return value if late is None else f"{value} if {self._any_lists(late, lane, index)} else {self._without_lists(late, lane, index)}"
 
     def _any_lists(self, late: LateRow, lane: int, row: str) -> str:
@@ -86,6 +87,23 @@ class MakeLate(Make):
             "return made",
         ]
         return "".join(f"    {line}\n" for line in lines)
+
+    def function_of(self, type_: Type, lane: int) -> list[str]:
+        """The lines of a function that makes the object of a row of a type that contains itself."""
+        row, slot, marked = "index", self.unit.layout.lanes[lane].element, self.scope.direct.marked.get(lane)
+
+        def returned(row: str) -> str:
+            return f"return {self.value(type_, slot, lane, row)}"
+
+        if marked is None:
+            return [returned(row)]
+        if (late := self.scope.direct.late_rows.get(lane)) is not None:
+            lines, empty = [*self._with_lists(late, lane, row), f"return {MADE}"], self._without_lists(late, lane, row)
+        else:
+            spans = frozenset((lane, offset) for offset in marked.offsets)
+            lines, empty = self._read(returned, lane, row), replace(self, absent=spans).value(type_, slot, lane, row)
+        any_list = " or ".join(self.scope.field(lane, row, marked.mark + behind, "i64") for behind in (0, 8))
+        return [f"if {any_list}:", *(f"    {line}" for line in lines), f"return {empty}"]
 
     def _read(self, text: Callable[[str], str], lane: int, row: str) -> list[str]:
         """Lines that need numbers of a row: one call reads many."""

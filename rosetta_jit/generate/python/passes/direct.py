@@ -21,6 +21,14 @@ class LateRow:
     lists: tuple[Span, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Marked:
+    """The lists of rows of a type that contains itself, by their offsets; one of them starts at no 0 in rows that have any of them."""
+
+    mark: int
+    offsets: tuple[int, ...]
+
+
 MOST_GROUPS = 10
 """Each set of groups that objects lack has a class, which is made when the first such object comes."""
 OF_GROUP = 8
@@ -46,7 +54,8 @@ class Direct:
     it starts. ``listed`` are the lanes of texts that are appended where they are checked.
     ``visits`` are the calls of `Descents` by name, whose rows become lists; of messages within others ``left`` has the lanes
     that all of them share, by number: a list says how many more rows each may have; ``checks`` is what is checked of the count of a visit
-    where there are any. ``late_rows`` are the rows, by lane, that say whether they have any list.
+    where there are any. ``late_rows`` are the rows, by lane, that say whether they have any list; ``marked`` those of types that contain
+    themselves (`rows_of_pieces`).
     """
 
     whole: set[int] = field(default_factory=set[int])
@@ -74,6 +83,7 @@ class Direct:
     )
     fields: tuple[LateField, ...] = ()
     late_rows: dict[int, LateRow] = field(default_factory=dict[int, LateRow])
+    marked: dict[int, Marked] = field(default_factory=dict[int, Marked])
 
     def read(self) -> set[str]:
         """The locals that say where texts and bytes are, which no statement may say any more, and those of checks."""

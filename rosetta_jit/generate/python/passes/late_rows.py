@@ -52,17 +52,17 @@ def _with_late(body: Block, lane: int, late: LateRow, name: str) -> Block:
     """A body with the block that fills the rows of a lane changed, if nothing else has to do with their lists."""
     offsets = {each.offset + behind for each in late.lists for behind in (0, 8)}
     mentions = [place for stmt, _ in statements(body) for place in places_of(stmt) if place.lane == lane and place.offset in offsets]
-    blocks = [block for block in blocks_within(body) if any(_row_cleared(stmt, lane) for stmt in block)]
+    blocks = [block for block in blocks_within(body) if any(row_cleared(stmt, lane) for stmt in block)]
     filled = _filled(blocks[0], lane, late, f"any\0{name}\0lists") if len(blocks) == 1 and len(mentions) == len(offsets) else None
     if filled is None:
         return body
     block, firsts = filled
-    return (*(Var(first, index(0)) for first in firsts), *_put(body, blocks[0], block))
+    return (*(Var(first, index(0)) for first in firsts), *put(body, blocks[0], block))
 
 
-def _put(block: Block, old: Block, new: Block) -> Block:
+def put(block: Block, old: Block, new: Block) -> Block:
     """A block with another one in place of one within it."""
-    return new if block is old else tuple(with_blocks(stmt, lambda inner: _put(inner, old, new)) for stmt in block)
+    return new if block is old else tuple(with_blocks(stmt, lambda inner: put(inner, old, new)) for stmt in block)
 
 
 def _filled(block: Block, lane: int, late: LateRow, flag: str) -> tuple[Block, tuple[str, ...]] | None:
@@ -70,17 +70,17 @@ def _filled(block: Block, lane: int, late: LateRow, flag: str) -> tuple[Block, t
 
     Besides, the locals that say where a row's lists start: a row that has none leaves them as they are.
     """
-    begin = next(number for number, stmt in enumerate(block) if _row_cleared(stmt, lane))
+    begin = next(number for number, stmt in enumerate(block) if row_cleared(stmt, lane))
     ends = [number for number, stmt in enumerate(block) if _list_set(stmt, lane, late.lists)]
     lanes = {each.lane for each in late.lists}
     between = block[begin + 1 : ends[0]] if len(ends) == len(late.lists) else ()
     if (
         not between
-        or any(_fills_outside(stmt, lanes) for stmt in between)
+        or any(fills_outside(stmt, lanes) for stmt in between)
         or not all(isinstance(each, If) for each in block[ends[0] : ends[-1]])
     ):
         return None
-    row = _row_cleared(block[begin], lane)
+    row = row_cleared(block[begin], lane)
     assert row is not None
     firsts = {
         stmt.name: stmt.value for stmt in between if isinstance(stmt, Let) and isinstance(stmt.value, Used) and stmt.value.lane in lanes
@@ -94,7 +94,7 @@ def _filled(block: Block, lane: int, late: LateRow, flag: str) -> tuple[Block, t
         sets.append(If(Local("bool", flags[-1][0]), (SetField(replace(row, offset=group[-1].offset), index(1)), *own)))
     others = tuple(stmt for number, stmt in enumerate(block[ends[0] :], ends[0]) if number not in ends)
     for name, of in flags:
-        between = tuple(_flagged(stmt, of, name) for stmt in between)
+        between = tuple(flagged(stmt, of, name) for stmt in between)
     begun = (Var(name, FALSE) for name, _ in flags)
     return (*block[: begin + 1], *begun, *between, If(Local("bool", flag), tuple(sets)), *others), tuple(firsts)
 
@@ -108,7 +108,7 @@ def _with_next(stmt: Stmt, firsts: Mapping[str, Used]) -> Stmt:
             raise AssertionError(stmt)
 
 
-def _row_cleared(stmt: Stmt, lane: int) -> Place | None:
+def row_cleared(stmt: Stmt, lane: int) -> Place | None:
     """The row of a lane that a statement clears."""
     match stmt:
         case Fill(Place(of, _, 0) as row, Const(), 0) if of == lane:
@@ -126,21 +126,21 @@ def _list_set(stmt: Stmt, lane: int, lists: Collection[Span]) -> bool:
             return False
 
 
-def _fills_outside(stmt: Stmt, lanes: Set[int]) -> bool:
+def fills_outside(stmt: Stmt, lanes: Set[int]) -> bool:
     """Whether a statement has to do with some lanes in no case of a switch, but for asking where their next row is."""
     if isinstance(stmt, Switch):
         return False
     is_first = isinstance(stmt, Let) and isinstance(stmt.value, Used)
-    inner = any(_fills_outside(each, lanes) for block in blocks_of(stmt) for each in block)
+    inner = any(fills_outside(each, lanes) for block in blocks_of(stmt) for each in block)
     return inner or (bool(lanes_of(stmt) & lanes) and not is_first)
 
 
-def _flagged(stmt: Stmt, lanes: Set[int], flag: str) -> Stmt:
+def flagged(stmt: Stmt, lanes: Set[int], flag: str) -> Stmt:
     """A statement whose outermost switches say in which of their cases rows of some lanes come."""
 
     def inside(block: Block) -> Block:
         if not isinstance(stmt, Switch):
-            return tuple(_flagged(each, lanes, flag) for each in block)
+            return tuple(flagged(each, lanes, flag) for each in block)
         fills = any(lanes_of(each) & lanes for each, _ in statements(block))
         return (Assign(flag, TRUE), *block) if fills else block
 

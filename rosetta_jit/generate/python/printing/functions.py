@@ -23,6 +23,7 @@ from rosetta_jit.generate.python.passes.late_fields import late_fields
 from rosetta_jit.generate.python.passes.late_rows import with_late_rows
 from rosetta_jit.generate.python.passes.local_names import Locals
 from rosetta_jit.generate.python.passes.mentions import blocks_within
+from rosetta_jit.generate.python.passes.rows_of_pieces import with_rows_of_pieces
 from rosetta_jit.generate.python.passes.search import FEW, direct
 from rosetta_jit.generate.python.passes.sums import ends_first, with_locals
 from rosetta_jit.generate.python.printing.classes import WORDS
@@ -159,6 +160,7 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
         known = {*scope.direct.whole, *scope.direct.appended, *scope.direct.elements, *scope.direct.rows}
         body = without_empty_spans(ends_first(body), kernel.strides, known)
         body, scope.direct.late_rows = with_late_rows(body, kernel, objects.layout, objects.late_rows)
+        body = with_rows_of_pieces(body, kernel, objects.layout, objects.late_rows, scope.direct)
         body, scope.direct.fields = late_fields(body, kernel, objects.layout, known) if descents is None else (body, ())
     checked, behind = body, frozenset[str]()
     if descents is not None:
