@@ -17,7 +17,7 @@ import pytest
 from hypothesis import settings
 
 from rosetta_jit.generate import languages
-from rosetta_jit.generate.build import AheadOfTime, LowByteFirst
+from rosetta_jit.generate.build import AheadOfTime, InRounds
 from rosetta_jit.kernel.printer import to_text
 from rosetta_jit.pipeline.build import Build
 from rosetta_jit.startup import entry_points, garbage
@@ -70,7 +70,7 @@ def proven_once(of_all_processes):
     def sharing(optimised):
         def once(build, kernel):
             # By its text: 0.0 and -0.0 are equal, but not the same.
-            name = sha256(f"{optimised.__qualname__} {build.types.rules is None} {to_text(kernel)}".encode()).hexdigest()
+            name = sha256(f"{passes_of(build)} {build.types.rules is None} {to_text(kernel)}".encode()).hexdigest()
             made = known.get(name)
             if made is None:
                 made = known[name] = read_or_written(folder / name, lambda: optimised(build, kernel))
@@ -82,7 +82,7 @@ def proven_once(of_all_processes):
         return once
 
     with pytest.MonkeyPatch.context() as patch:
-        for each in (Build, AheadOfTime, LowByteFirst):
+        for each in (Build, AheadOfTime):
             patch.setattr(each, "_optimised", sharing(each._optimised))
         yield
 
@@ -97,6 +97,13 @@ def seldom_collected():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(garbage, "_call_all_old", lambda: None)
         yield
+
+
+def passes_of(build):
+    """What is done with the kernels of a program, as text: the rounds that Python makes objects in depend on the layout besides."""
+    if not isinstance(build, AheadOfTime):
+        return ""
+    return " ".join([*(each.__qualname__ for each in build._passes()), repr(build.layout) if isinstance(build, InRounds) else ""])
 
 
 def read_or_written(path, make):

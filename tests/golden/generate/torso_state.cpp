@@ -43,7 +43,7 @@ struct torso_state_span {
 /* rst.kinematics.JointAngles */
 typedef struct torso_state_JointAngles {
     torso_state_span unknown; /* fields that the schema does not know, as they came; in `unknown` */
-    torso_state_span angles; /* in `angles` */
+    torso_state_span angles; /* Joint angles, in rad; in `angles` */
 } torso_state_JointAngles;
 
 static_assert(sizeof(torso_state_JointAngles) == 32, "no padding is added");
