@@ -252,11 +252,13 @@ def test_plain_values_become_holders_in_compiled_code_from_the_second_on(monkeyp
     in_python: list[object] = []
     take_plain = Takers.take_plain
     monkeypatch.setattr(Takers, "take_plain", lambda *given: in_python.append(given[2]) or take_plain(*given))
-    makes = rj.Decoder.of("sensor_msgs/msg/ChannelFloat32", encoding="cdr").holder_type
-    values = {"name": "x", "values": [3.5] * 12}
-    fresh = rj.Decoder.of("sensor_msgs/ChannelFloat32", encoding="ros1").holder_type
-    makes()
-    for holder_type in (makes, fresh):
+    types = {}  # of no other test, as a process keeps what it has made
+    for name in ("of_made", "of_fresh"):
+        schema = {f"test_msgs/{name}.msg": f"string name\nfloat32[] values\nuint8 {name}\n"}
+        types[name] = rj.Decoder.of(f"test_msgs/{name}", encoding="ros1", schema=schema).holder_type
+    types["of_made"]()
+    for name, holder_type in types.items():
+        values = {"name": "x", "values": [3.5] * 12, name: 3}
         assert [holder_type.from_dict(values).to_dict() for _ in range(4)] == [values] * 4
         assert len(in_python) == 1
         holder_type.from_dict(values).values = [3.5] * 100
