@@ -84,7 +84,7 @@ def test_the_example_in_c_runs(tmp_path, monkeypatch):
 def test_the_example_in_cpp_runs(tmp_path, monkeypatch):
     """The project of the page, as its reader builds it."""
     text = (ROOT / "docs" / "cpp.md").read_text()
-    (build,), (project,), (source,), (said,) = (
+    (build,), (project,), (source, _), (said,) = (
         re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("sh", "cmake", "cpp", "text")
     )
     monkeypatch.chdir(tmp_path)

@@ -120,6 +120,7 @@ def unit_of(
         arrival_registers([name for name, _ in state], first.wires),
         {role: share.cleared | share.alone | share.joined for role, build in builds.items() if (share := build.types.share) is not None},
         first.holder_framework.name,
+        first.wire_framework.announced(first.types.wire, first.types.schema).get("type", first.types.wire.name),
     )
 
 

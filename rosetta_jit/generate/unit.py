@@ -66,6 +66,8 @@ class Unit:
         Which classes are filled, and the header that declares them, where the user says so.
     state
         The state variables of the mapping, in the order of registers, and the words that they are at first.
+    announced
+        What transports call the type of the messages: protobuf's with a dot in front.
     numpy
         Arrays of numbers are numpy's, where the language has them.
     arrivals
@@ -93,6 +95,7 @@ class Unit:
     arrivals: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, "tuple[int, int]"])
     shares: Mapping[Role, Ways] = field(default_factory=dict["Role", "Ways"])
     framework: str = ""
+    announced: str = ""
 
 
 def wires_of(unit: Unit) -> list[str]:

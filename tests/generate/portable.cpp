@@ -12,6 +12,8 @@ int main()
     std::cout << port.write(writer) << ' ' << writer.bytes.size() << '\n';
     yarp::os::ConnectionReader broken(bottle.substr(0, 20));
     std::cout << port.read(broken) << ' ' << port.error.what() << '\n';
+    yarp::os::ConnectionReader ended(bottle, std::size_t{200} << 31);
+    std::cout << port.read(ended) << ' ' << port.error.what() << '\n';
     torso_state::codec codec;
     try {
         codec.decode(bottle.data(), 20, port.message);
@@ -22,4 +24,5 @@ int main()
     std::string bytes;
     const auto refused = codec.try_encode(port.message, bytes);
     std::cout << (refused ? "written" : refused.error().what()) << '\n';
+    std::cout << port.can_be_written() << ' ' << port.write(writer) << '\n';
 }

@@ -28,7 +28,6 @@ from tests.golden import GOLDEN, check_golden
 BOTH = ("decode", "encode")
 CMAKE = INCLUDE.parents[1] / "cmake"
 HERE = Path(__file__).parent
-MODELS = f"-I{HERE / 'models'}"
 NUMBERS = 'syntax = "proto2"; package rj; message Numbers { repeated double many = 1; optional double sometimes = 2; }'
 OUTER = "=" * 80 + "\nMSG: evil/Inner\nfloat32 while\nstring memcpy\nuint8 holder\nint64[2] which\nstring codec\nbool[] std\n"
 OUTER += "float64[] target\nint32 given_object\n"
@@ -298,38 +297,6 @@ def test_positions_that_a_loop_proves_are_not_checked_again(language):
     text = generated(request, language, BOTH, "numbers")[f"numbers.{language}"]
     assert re.search(r"if \(end < next_2 \+ 8\) \{\n +failure->indices\[0\] = many_used - ", text)
     assert re.search(r"if \(many_used >= holder->many.capacity\) \{", text)
-
-
-@cpp.needs_cpp
-def test_a_class_that_reads_and_writes_itself_on_a_port(tmp_path):
-    """With a model of YARP's classes, which have these signatures."""
-    name = cpp.write(tmp_path, generated(TORSO, "cpp", BOTH, "torso_state", Wishes(holder="yarp")))
-    made = cpp.program(tmp_path, name, options=("-O0", MODELS), main=HERE / "portable.cpp", is_apart=True)
-    said = subprocess.run([made], capture_output=True, text=True, check=True)
-    assert said.stdout.splitlines() == [
-        "1 3 1.5708",
-        "1 32",
-        "0 truncated at .roll, byte 16: the message ends here",
-        "truncated .roll 16",
-        "index at .angles[2]: no such element (torso_state.mapping:13:3)",
-    ]
-
-
-@pytest.mark.campaign
-@cpp.needs_cpp
-def test_a_converter_for_rsb(tmp_path):
-    """With protoc's real class, and a model of RSB's."""
-    native.needs_protoc()
-    if not native.finds("boost/make_shared.hpp"):
-        pytest.skip("Boost is not installed")
-    request = type_request("decode", "rst.kinematics.JointAngles", {"encoding": "protobuf"})
-    name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "joint_angles", Wishes(holder="rsb")))
-    subprocess.run(["protoc", f"--cpp_out={tmp_path}", "-I", native.ROOT / "idl", "rst/kinematics/JointAngles.proto"], check=True)
-    around = (f"-isystem{tmp_path}", MODELS, "-O0", str(tmp_path / "rst/kinematics/JointAngles.pb.cc"))
-    said = subprocess.run(
-        [cpp.program(tmp_path, name, "-lprotobuf", options=around, main=HERE / "converter.cpp")], capture_output=True, text=True, check=True
-    )
-    assert said.stdout.splitlines() == [".rst.kinematics.JointAngles 1", "rst.kinematics.JointAngles -2"]
 
 
 @pytest.mark.campaign

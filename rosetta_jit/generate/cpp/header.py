@@ -15,6 +15,7 @@ from rosetta_jit.generate.cpp.decoding.at_once import is_called
 from rosetta_jit.generate.cpp.encoding.reading import writes_apart
 from rosetta_jit.generate.cpp.objects.classes import classes
 from rosetta_jit.generate.unit import Unit, wires_of
+from rosetta_jit.kernel.traits import asks_host
 from rosetta_jit.model.types import Struct
 from rosetta_jit.startup.dataclass import dataclass
 
@@ -22,6 +23,19 @@ if TYPE_CHECKING:
     from rosetta_jit.generate.cpp.objects.manners import Manners
 
 FOLDER = Path(__file__).parent
+ASKED = {
+    "clock": "#include <chrono>\n",
+    "begins": "        codec_.now = nanoseconds();\n",
+    "ends": "        ++codec_.number;\n",
+    "nanoseconds": """
+    /* Since 1970. */
+    static std::int64_t nanoseconds()
+    {
+        return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+    }
+""",
+}
+"""What classes around a codec have besides, where the mapping asks for the time, or for the number of a message."""
 RESET = (
     "    /* Forgets all messages: state is what the mapping says that it is at first. */",
     "    void reset() { kept = state(); }",
@@ -61,9 +75,8 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
     lines = [f"#include {each}" for each in sorted(includes)] + ["", "#include <rosetta_jit/rosetta_jit.hpp>"]
     if manners.header is not None:
         lines += [f"#include <{unit.include or manners.header(root)}>"]
-    around = [_section(FOLDER / "around" / f"{each}.hpp") for each in manners.around]
-    words = {"name": unit.name, "holder": named, "type": literal(root.name), "wire": literal(root.name)}
-    lines += [line for before, _ in around for line in before.splitlines()]
+    around, lines_around = _around(unit, manners)
+    lines += lines_around
     return filled_in(
         "header.hpp",
         made=made(unit),
@@ -76,7 +89,7 @@ def header(unit: Unit, manners: Manners, there: AtOnce) -> str:
         state=_state(unit),
         written="    std::unique_ptr<memory> written_;\n" if writes_apart(unit) else "",
         functions="".join(_function(unit, each.name, each.parameters, each.result) for each in unit.functions),
-        around="\n".join(Template(text).substitute(words) for _, text in around),
+        around=around,
     )
 
 
@@ -161,9 +174,15 @@ def _declared(unit: Unit, there: AtOnce) -> list[str]:
     return [re.sub(r"\{\n\n+", "{\n", text) for text in (*found, *encode)]
 
 
-def _section(file: Path) -> tuple[str, str]:
-    """The includes of a file, and the rest."""
-    text = file.read_text("utf-8")
+def _around(unit: Unit, manners: Manners) -> tuple[str, list[str]]:
+    """The classes around the codec, and the lines that include what they need."""
+    words = {"wire": literal(unit.announced)} | (ASKED if asks_host(unit.kernels.values()) else dict.fromkeys(ASKED, ""))
+    parts = [_section(Template((FOLDER / "around" / f"{each}.hpp").read_text("utf-8")).substitute(words)) for each in manners.around]
+    return "\n".join(text for _, text in parts), [line for before, _ in parts for line in before.splitlines()]
+
+
+def _section(text: str) -> tuple[str, str]:
+    """The includes of a text, and the rest."""
     includes = [line for line in text.splitlines() if line.startswith("#include")]
     return "\n".join(includes), "\n".join(line for line in text.splitlines() if line not in includes).strip() + "\n"
 

@@ -6,7 +6,7 @@ namespace yarp::os {
 class ConnectionWriter {
 public:
     void appendBlock(const char *data, std::size_t size) { bytes.append(data, size); }
-    bool convertTextMode() { return true; }
+    bool isTextMode() const { return false; }
     bool isError() const { return false; }
     std::string bytes;
 };
