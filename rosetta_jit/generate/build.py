@@ -11,7 +11,7 @@ from rosetta_jit.generate.inner_types import with_inner_types
 from rosetta_jit.generate.languages import Language, installed, language_named
 from rosetta_jit.generate.origins import Origin, origins_of
 from rosetta_jit.generate.passes.bounds import bounds_of_type, least, reserved
-from rosetta_jit.generate.passes.rounds import with_rounds
+from rosetta_jit.generate.passes.rounds import with_rounds, with_rounds_of_flags
 from rosetta_jit.generate.provenance import line_of_mapping, line_of_type
 from rosetta_jit.generate.unit import Role, Unit, UserFunction, wire_of
 from rosetta_jit.kernel.ir import Kernel
@@ -59,6 +59,9 @@ class IntoObjects(LowByteFirst):
 
     TEXTS_STAY = True
     ROWS_IN_ORDER = True
+
+    def _passes(self) -> tuple[passes.Pass, ...]:
+        return with_rounds_of_flags(super()._passes(), self.layout)
 
 
 class InRounds(LowByteFirst):

@@ -7,6 +7,7 @@ import pytest
 import rosetta_jit as rj
 from rosetta_jit.api.options import type_request
 from rosetta_jit.generate.build import generated
+from rosetta_jit.generate.cpp.decoding.one_by_one import MOST_BYTES
 from tests.generate import cpp
 from tests.generate.cpp import QUICK
 from tests.generate.driver import answers, harmed
@@ -64,6 +65,13 @@ TYPES = {
     ),
     "arrays": ("string name\nfloat64[] many\nint16[] few\nuint8 last\n", {"name": "n", "many": [1.0, 2.0, 3.0], "few": [-1, 2], "last": 4}),
     "bytes": ("int32[] some\nint64[3] three\nuint8[] data\n", {"some": [1, 2], "three": [1, 2, 3], "data": b"d" * 70}),
+    "fixed arrays of texts": (
+        f"string[2] two\nFew[3] few\n{SEPARATOR}\nMSG: rj/Few\nstring[2] names\nint8[5] five\nfloat32[] values\n",
+        {
+            "two": ["one", ""],
+            "few": [{"names": ["n" * 17, "\u20ac"], "five": [1, 2, 3, 4, each], "values": [0.5] * each} for each in range(3)],
+        },
+    ),
 }
 OTHERS = {
     "text": {"data": "\u00e4\u00f6\u20ac"},
@@ -80,6 +88,7 @@ OTHERS = {
     "poses between texts": {"frame": "", "poses": POSES, "name": "\u00e4"},
     "bytes and a list of texts": {"kinds": [{"kind": 3}] * 17, "names": ["one", ""]},
     "a list of flags": {"flags": [{"set": False, "rest": 1}] * 2},
+    "fixed arrays of texts": {"two": ["x" * 500, "longer than what is read in the header"]},
 }
 """What the source file reads, as lists that have many elements, or texts that have nothing."""
 EMPTY_IN_CDR = {
@@ -92,12 +101,19 @@ EMPTY_IN_CDR = {
     "bytes",
 }
 """Texts of CDR have a byte behind them, and so are never empty."""
-EMPTY = {*TYPES} - {"numbers", "numbers behind bytes", "triangles"}
-WRITTEN = {*TYPES}
+EMPTY = {*TYPES} - {"numbers", "numbers behind bytes", "triangles", "fixed arrays of texts"}
+WRITTEN = {*TYPES} - {"fixed arrays of texts"}
 ONE_LENGTH = {"text", "text behind numbers", "a list of numbers", "a list of flags", "a list of keys"}
 """What has several texts or lists is read by a function that is called, where an empty message is read without one."""
-OF_TEXTS = {"lists before arrays", "lists of texts", "bytes and a list of texts", "lists within lists"}
-"""What has lists whose elements have texts. Where it would be read by a call, the function in the source file is called at once."""
+ONE_BY_ONE = {
+    "lists before arrays",
+    "lists of texts",
+    "bytes and a list of texts",
+    "lists within lists",
+    "a list of flags",
+    "fixed arrays of texts",
+}
+"""What has lists whose elements are set as they are read, as they have texts, or are checked. A compiler says whether that is a call."""
 ALIGNED = {"poses between texts"}
 """What lies elsewhere in each message of CDR: elements of a list whose places only a loop says."""
 
@@ -135,10 +151,11 @@ def test_messages_that_are_harmed_get_the_same_answers(type_, units):
     options = {"encoding": encoding, "schema": schema(type_)}
     is_found = encoding == "ros1" or type_ not in ALIGNED
     is_read_empty = type_ in (EMPTY if encoding == "ros1" else EMPTY_IN_CDR)
-    is_read = is_found and not (is_read_empty and type_ in OF_TEXTS)
-    assert ("static bool is_read(" in header) == is_read
+    is_one_by_one = type_ in ONE_BY_ONE or not is_found
+    assert "static bool is_read(" in header
+    assert (f"if (end > {MOST_BYTES})" in header) == is_one_by_one
     assert ("static bool is_read_empty(" in header) == is_read_empty
-    assert ("ROSETTA_JIT_APART static bool is_read(" in header) == (is_read and is_read_empty and type_ not in ONE_LENGTH)
+    assert ("ROSETTA_JIT_APART static bool is_read(" in header) == (is_read_empty and not is_one_by_one and type_ not in ONE_LENGTH)
     assert ("put_at_once(" in header) == (type_ in WRITTEN and is_found)
     assert ("statuses_values_list::at(" in header) == (type_ == "lists within lists" and encoding == "ros1")
     values = TYPES[type_][1]

@@ -173,7 +173,7 @@ def test_lists_of_texts_that_grow_and_shrink(encoding, tmp_path):
     options = {"encoding": encoding, "schema": "string[] texts\nstring name\n"}
     request = type_request("decode", "rj/Texts", options)
     name = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit", Wishes(holder="ros1", include="texts.h")))
-    assert "open(given_object.texts" in (tmp_path / "unit.cpp").read_text()
+    assert "opened_texts(given_object.texts" in (tmp_path / "unit.cpp").read_text()
     decode, encode = (of("rj/Texts", **options) for of in (rj.Decoder.of, rj.Encoder.of))
     texts = ["abcdefghijklmnopqrstuvwxyz"[: 3 * each % 27] for each in range(40)]
     good = [bytes(encode({"texts": texts[:count], "name": "n"})) for count in (0, 3, 1, 40, 2, 2, 7, 0, 12)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rosetta_jit.generate.c.printing.expressions import expression
 from rosetta_jit.generate.c.printing.function import Function, lacks
+from rosetta_jit.generate.c.printing.scope import Scope
 from rosetta_jit.generate.c.printing.statements import print_block
 from rosetta_jit.generate.cpp.passes.checks import IMPLIED
 from rosetta_jit.generate.parentheses import bare
@@ -21,6 +22,16 @@ FEW_CHECKS = 8
 Of fewer that is said where no text is looked at: a compiler then calls functions of a text that it would else put in their place."""
 PARAMETERS = frozenset({"given_object", "bytes", "end"})
 """What such a function is given."""
+
+
+def pointers(scope: Scope) -> list[str]:
+    """The lines that declare pointers to arrays of the object whose elements statements reach."""
+    lanes = scope.lanes
+    return [
+        f"        {lanes.type(lane)} *{'' if lane in scope.moved else 'const '}{lanes.rows(lane)} = {lanes.member(lane)};"
+        for lane in sorted(scope.touched)
+        if lanes.member(lane)
+    ]
 
 
 def is_shared(function: str) -> bool:

@@ -13,15 +13,15 @@ from rosetta_jit.kernel.walk import bound_names, statements
 from rosetta_jit.startup.dataclass import replace
 
 
-def unroll(kernel: Kernel, stays: Callable[[Block], bool] = lambda _: False) -> Kernel:
-    """The kernel without short loops, but for those whose body ``stays``."""
+def unroll(kernel: Kernel, stays: Callable[[For], bool] = lambda _: False) -> Kernel:
+    """The kernel without short loops, but for those of which ``stays`` is true."""
     names = {name for body in kernel.bodies for stmt, _ in statements(body) for name in bound_names(stmt)}
 
     def unrolled(block: Block) -> Block:
         result: list[Stmt] = []
         for stmt in block:
             match stmt:
-                case For(variable, Const(_, count), body) if _is_short(int(count), body) and not stays(body):
+                case For(variable, Const(_, count), body) if _is_short(int(count), body) and not stays(stmt):
                     for number in range(int(count)):
                         result.extend(_round(body, variable, number, names))
                 case _:

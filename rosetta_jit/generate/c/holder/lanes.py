@@ -68,7 +68,8 @@ class Straight:
 
     It stands for `$value`, a number; or of a ``text`` for `$start` and `$size`, which say where it is in the message; or for the `$count`
     of a list, whose elements are those of ``lane`` from then on. `$index` is the number of the element that the field is of. Numbers that
-    are elements themselves may be ``copied`` at once, too. ``empty`` is the statement for a list of the message that has no elements.
+    are elements themselves may be ``copied`` at once, too. ``empty`` is the statement for a list of the message that has no elements,
+    ``checked`` the condition of a text that is set if its bytes are one.
     """
 
     statement: str
@@ -76,6 +77,7 @@ class Straight:
     text: bool = False
     copied: bool = False
     empty: str = ""
+    checked: str = ""
 
     @property
     def is_span(self) -> bool:

@@ -58,16 +58,21 @@ def expression(scope: Scope, expr: nodes.Expr) -> str:
             chosen = f"({expression(scope, condition)} ? {expression(scope, then)} : {expression(scope, otherwise)})"
             return _cast(scope, C_TYPES[type_of(then)], chosen) if nodes.WIDTH[type_of(then)] < 4 else chosen
         case nodes.IsText(address, size):
-            memory, start = location(scope, address)
-            arguments = f"{memory}, {start}, {expression(scope, size)}"
-            text = f"{scope.calls('is_text')}({arguments})"
-            return f"(rosetta_jit::detail::is_ascii({arguments}) || {text})" if scope.lanes.dialect == "c++" else text
+            return _is_text(scope, address, size)
         case nodes.Nearest() | nodes.Digits() | nodes.Scale():
             return _decimal(scope, expr)
         case nodes.Lookup(type_, values, index):
             return f"{scope.table(type_, values)}[{bare(expression(scope, index))}]"
         case _:
             assert_never(expr)
+
+
+def _is_text(scope: Scope, address: nodes.Address, size: nodes.Expr) -> str:
+    """Whether bytes are a text. In C++ the header that all units share says so, at once of ASCII."""
+    arguments = ", ".join((*location(scope, address), expression(scope, size)))
+    if scope.lanes.dialect == "c++":
+        return f"(rosetta_jit::detail::is_ascii({arguments}) || rosetta_jit::detail::is_text({arguments}))"
+    return f"{scope.calls('is_text')}({arguments})"
 
 
 def _about_the_holder(scope: Scope, expr: nodes.Known) -> str:

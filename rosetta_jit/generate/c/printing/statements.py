@@ -67,8 +67,8 @@ def _statement(function: Function, stmt: nodes.Stmt) -> None:
             _bind(function, stmt)
             function.known = after_binding(function.known, stmt.name, stmt.value)
         case nodes.SetField(place, value) if (straight := straight_statement(scope, place, value)) is not None:
-            if straight:
-                function.line(f"{straight}{_origin(function, stmt)}")
+            for line in straight.splitlines():
+                function.line(f"{line}{_origin(function, stmt)}")
         case nodes.Store() | nodes.SetField() | nodes.Copy() | nodes.Fill():
             function.line(f"{_effect(scope, stmt)}{_origin(function, stmt)}")
         case nodes.Reserve() | nodes.Advance():
@@ -133,7 +133,8 @@ def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, count: nod
     copied = ", ".join((*location(scope, target), *location(scope, source), size))
     lanes = [each.lane for each in (target, source) if isinstance(each, nodes.Place)]
     if scope.lanes.dialect == "c++" and any(scope.lanes.stride(lane) > 1 or lane in scope.lanes.opened for lane in lanes):
-        return f"rosetta_jit::detail::copy_numbers({copied});"
+        apart = "_apart" if scope.lanes.shared and isinstance(target, nodes.Place) else ""
+        return f"rosetta_jit::detail::copy_numbers{apart}({copied});"
     if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place):
         return f"rosetta_jit::detail::copy_few({copied});"
     return f"{scope.calls('copy_bytes')}({copied});"

@@ -2,7 +2,7 @@
 
 It is the first body of the kernel for messages whose lists are empty, or have few elements. It has nothing to do where something is wrong
 with a message: it says that it has not read it, and the decoder in the source file begins anew. So all checks come first, and branches that
-set nothing count as something wrong.
+set nothing count as something wrong. Where elements of lists must be set as they are read, `one_by_one` does it.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from rosetta_jit.generate.c.printing.function import Function
 from rosetta_jit.generate.c.printing.scope import Scope
 from rosetta_jit.generate.c.printing.statements import print_block
 from rosetta_jit.generate.c.support import function_names
-from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are_marked, check, is_shared
+from rosetta_jit.generate.cpp.decoding.one_by_one import one_by_one
+from rosetta_jit.generate.cpp.header_checks import MOST, PARAMETERS, SHARED, are_marked, check, is_shared, pointers
 from rosetta_jit.generate.cpp.passes.checks import fewer
 from rosetta_jit.generate.cpp.passes.empty_lists import lanes_of_empty_lists, lanes_of_nothing, lists_of, of_empty_lists, of_nothing
-from rosetta_jit.generate.cpp.passes.few_elements import lanes_of_few_elements, of_few_elements
+from rosetta_jit.generate.cpp.passes.few_elements import lanes_of_opened, of_few_elements
 from rosetta_jit.generate.cpp.passes.opened import without_asking, without_counting
 from rosetta_jit.generate.passes.reachable import read_names
 from rosetta_jit.generate.passes.roundings import two_roundings
@@ -37,16 +38,18 @@ def at_once(kernel: Kernel, lanes: Lanes, apart: tuple[Kernel, Lanes], reads_emp
 
     ``lanes`` say how the kernel reaches the object, ``apart`` are kernel and lanes of a decoder that opens all lists. ``reads_empty`` are
     the statements of a decoder of messages without elements. None is called that needs lists to be empty: other messages would cost a call
-    more.
+    more. Of one that sets elements as it reads them a compiler says whether it is called.
     """
-    found = _reached(kernel, lanes, *apart)
-    if found is None or two_roundings((kernel,)):
+    if two_roundings((kernel,)):
         return "", 0
-    checks, effects, reached, are_empty = found
-    lengths = sum(_has_length(reached, each) - _is_fixed(reached, each) for each in effects)
-    if are_empty and is_called(lengths, reads_empty):
-        return "", 0
-    return _printed(kernel, fewer(checks, is_sized=lengths == 0), effects, reached), lengths
+    opening, reached = without_counting(without_asking(apart[0], apart[1].opened), apart[1].given), apart[1]
+    text, lengths = _checked_first(kernel, of_few_elements(opening.bodies[0], reached), lanes_of_opened(reached))
+    if text:
+        return text, lengths
+    if text := one_by_one(opening, reached):
+        return text, 1
+    text, lengths = _checked_first(kernel, of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes))
+    return ("", 0) if lists_of(lanes) and is_called(lengths, reads_empty) else (text, lengths)
 
 
 def of_no_elements_at_once(kernel: Kernel, lanes: Lanes) -> str:
@@ -74,15 +77,14 @@ def _printed(kernel: Kernel, checks: nodes.Block, effects: nodes.Block, lanes: L
     return function.writer.text() if is_free and "given_object" in scope.parameters else ""
 
 
-def _reached(kernel: Kernel, lanes: Lanes, apart: Kernel, open_lanes: Lanes) -> tuple[nodes.Block, nodes.Block, Lanes, bool] | None:
-    """What the decoder checks and what it sets, how it reaches the object, and whether lists of the message must be empty."""
-    body = without_counting(without_asking(apart, open_lanes.opened), open_lanes.given).bodies[0]
-    ways = (
-        (of_few_elements(body, open_lanes), lanes_of_few_elements(open_lanes), False),
-        (of_empty_lists(kernel.bodies[0], lanes), lanes_of_empty_lists(lanes), bool(lists_of(lanes))),
-    )
-    found = ((parts, reached, are_empty) for each, reached, are_empty in ways if (parts := _straightened(each)) is not None)
-    return next(((*parts, reached, are_empty) for parts, reached, are_empty in found), None)
+def _checked_first(kernel: Kernel, body: nodes.Block, lanes: Lanes) -> tuple[str, int]:
+    """The statements of a body that checks all of a message before it sets anything, and how many texts, arrays and lists they set."""
+    parts = _straightened(body)
+    if parts is None:
+        return "", 0
+    checks, effects = parts
+    lengths = sum(_has_length(lanes, each) - _is_fixed(lanes, each) for each in effects)
+    return _printed(kernel, fewer(checks, is_sized=lengths == 0), effects, lanes), lengths
 
 
 def _straightened(body: nodes.Block) -> tuple[nodes.Block, nodes.Block] | None:
@@ -142,11 +144,7 @@ def _starts_with_bytes(checks: list[nodes.Stmt]) -> bool:
 
 def _print_effects(function: Function, effects: nodes.Block) -> None:
     """What sets the object, behind pointers to its arrays."""
-    lines, lanes = function.writer.lines, function.scope.lanes
-    before, scope = len(lines), function.scope
+    lines = function.writer.lines
+    before = len(lines)
     print_block(function, effects)
-    lines[before:before] = [
-        f"        {lanes.type(lane)} *{'' if lane in scope.moved else 'const '}{lanes.rows(lane)} = {lanes.member(lane)};"
-        for lane in sorted(scope.touched)
-        if lanes.member(lane)
-    ]
+    lines[before:before] = pointers(function.scope)

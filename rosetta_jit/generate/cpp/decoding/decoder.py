@@ -48,7 +48,7 @@ def _in_place(walk: Walk, kernel: Kernel, lists: list[Opened]) -> tuple[Kernel, 
     straight = {(0, offset): Straight(statement) for offset, (_, statement) in straight_numbers(walk).items()}
     for each in lists:
         kernel, straight = in_place(kernel, each.fields) or kernel, straight | each.fields
-    opened = frozenset(lane for each in lists for lane in each.containers.keys() - each.texts)
+    opened = frozenset(lane for each in lists for lane in each.containers)
     arrays = arrays_in_place(walk, OBJECT)
     for each in arrays:
         kernel = uncounted(kernel, each) or kernel

@@ -8,7 +8,7 @@ instead (`lists`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rosetta_jit.generate.c.holder.lanes import Straight
 from rosetta_jit.generate.cpp.objects.always import is_plain
@@ -24,6 +24,8 @@ from rosetta_jit.startup.dataclass import dataclass, field
 
 HOLDER = "std::declval<holder &>()"
 """An object, for types."""
+SPAN = {"start": "$start", "size": "$size"}
+"""What stands for where a text is in the message."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,8 @@ class Opened:
     """A list of the message with those within it: where each is, for types, by its lane; and what sets a field, by its lane and offset.
 
     Or a text, which has a lane alone. ``texts`` are the lanes of lists of texts, ``numbers`` those of arrays: the type of their rows, and
-    how many they are, if that is fixed; ``structs`` those of lists of structs: the type of these; ``fixed`` how many are in others of them.
+    how many they are, if that is fixed; ``structs`` those of lists of structs: the type of these; ``fixed`` how many structs or texts an
+    array has in any case.
     """
 
     at: str
@@ -60,7 +63,7 @@ class Opened:
         return found | {lane: f"number_lane<{container_type(self.containers[lane])}, {row}>" for lane, row in self.numbers.items()}
 
     def _count(self, lane: int) -> str:
-        """How many elements a list of structs has in any case, as an argument of a template."""
+        """How many elements an array has in any case, as an argument of a template."""
         return f", {self.fixed[lane]}" if lane in self.fixed else ""
 
 
@@ -140,25 +143,38 @@ def _list(walk: Walk, opened: Opened, type_: Type, span: Span, place: _Place) ->
     is_shown = walk.text("laid out", place.spot) != ""
     if not isinstance(resolved, Array) or layout.links is not None or not is_shown:
         return False
-    rows, container = walk.lanes.rows(span.lane), walk.text("direct", place.typed)
+    container = walk.text("direct", place.typed)
     opened.containers[span.lane] = container
     if isinstance(layout.element, Number):
         return _numbers(walk, opened, resolved, span, place)
     if isinstance(walk.unit.schema.resolve(resolved.element), String | Bytes):
-        if resolved.fixed is not None:
-            return False
-        opened.texts.add(span.lane)
-        opened.fields[place.lane, span.offset] = _opening(walk, "open texts", span, place)
-        words = {"lane": rows, "index": "$index", "start": "$start", "size": "$size"}
-        opened.fields[span.lane, 0] = Straight(walk.text("text of a list", place.spot, **words), text=True)
+        _texts(walk, opened, resolved, span, place)
         return True
     opened.fields[place.lane, span.offset] = _opening(walk, "open", span, place)
     opened.structs[span.lane] = resolved.element
     if resolved.fixed is not None:
         opened.fixed[span.lane] = resolved.fixed
     element = f"std::declval<rosetta_jit::detail::element_type<decltype({container})> &>()"
-    place = _Place(Spot(f"{rows}[$index]"), Spot(element), span.lane)
+    place = _Place(Spot(f"{walk.lanes.rows(span.lane)}[$index]"), Spot(element), span.lane)
     return _value(walk, opened, resolved.element, layout.element, place) and any(lane == span.lane for lane, _ in opened.fields)
+
+
+def _texts(walk: Walk, opened: Opened, type_: Array, span: Span, place: _Place) -> None:
+    """The same of texts, which an array of a fixed count of them has already."""
+    rows, words = walk.lanes.rows(span.lane), SPAN
+    if type_.fixed is None:
+        opened.texts.add(span.lane)
+        opening, kind, spot, words = "open texts", "text of a list", place.spot, words | {"lane": rows, "index": "$index"}
+    else:
+        opened.fixed[span.lane] = type_.fixed
+        opening, kind, spot = "open", "text", Spot(f"{rows}[$index]")
+    opened.fields[place.lane, span.offset] = _opening(walk, opening, span, place)
+    opened.fields[span.lane, 0] = _text(walk, kind, spot, words)
+
+
+def _text(walk: Walk, kind: str, spot: Spot, words: Mapping[str, str]) -> Straight:
+    """What sets a text, or bytes."""
+    return Straight(walk.text(kind, spot, **words), text=True, checked=walk.text(f"checked {kind}", spot, **words))
 
 
 def _opening(walk: Walk, text: str, span: Span, place: _Place) -> Straight:
@@ -184,7 +200,7 @@ def _value(walk: Walk, opened: Opened, type_: Type, slot: Slot, place: _Place) -
             opened.fields[place.lane, offset] = Straight(walk.text("number", place.spot, row="$value"))
             return True
         case ((String() | Bytes()), Span(offset)):
-            opened.fields[place.lane, offset] = Straight(walk.text("text in place", place.spot, start="$start", size="$size"), text=True)
+            opened.fields[place.lane, offset] = _text(walk, "text", place.spot, SPAN)
             return True
         case Array(), Span():
             return _list(walk, opened, type_, slot, place)

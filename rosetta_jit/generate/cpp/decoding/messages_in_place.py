@@ -59,7 +59,7 @@ class MessagesInPlace:
     @property
     def opened(self) -> frozenset[int]:
         """The lanes of lists within rows whose elements have rows of their own in other messages."""
-        return frozenset(lane for each in self.rows for lane in each.containers.keys() - each.texts)
+        return frozenset(lane for each in self.rows for lane in each.containers)
 
     def of_message(self, unit: Unit) -> Unit:
         """A unit whose decoder does what is done for the message alone."""

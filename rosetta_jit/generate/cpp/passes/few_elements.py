@@ -34,9 +34,9 @@ def of_few_elements(body: Block, lanes: Lanes) -> Block:
     return tuple(_checked(body)) if lists and lists | within == lanes.opened else body
 
 
-def lanes_of_few_elements(lanes: Lanes) -> Lanes:
-    """How such statements reach the object: rows are elements of its lists, which are declared where a list is opened."""
-    opened = frozenset[int]().union(*_lists(lanes))
+def lanes_of_opened(lanes: Lanes) -> Lanes:
+    """How statements in the header reach the object: rows are elements of its lists, which are declared where a list is opened."""
+    opened = lanes.opened
     fields = Counter(lane for lane, _ in lanes.straight)
     alone = frozenset(lane for lane in opened if fields[lane] == 1)
     straight = {at: replace(each, statement=_statement(each, opened, is_alone=at[0] in alone)) for at, each in lanes.straight.items()}
@@ -44,7 +44,7 @@ def lanes_of_few_elements(lanes: Lanes) -> Lanes:
 
 
 def _statement(field: Straight, opened: frozenset[int], *, is_alone: bool) -> str:
-    """What opens a list, or sets a field of its elements: of a byte alone a compiler would make a call of the C library's function."""
+    """What opens a list, or sets a field of its elements: of a number alone a compiler would make a call of the C library's function."""
     if field.lane in opened:
         return f"auto const {field.statement}"
     return field.statement.replace("$value", "rosetta_jit::detail::one_of_few($value)") if is_alone else field.statement

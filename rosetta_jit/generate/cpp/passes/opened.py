@@ -47,6 +47,8 @@ from rosetta_jit.kernel.walk import expressions_of, extents_of, statements, sube
 from rosetta_jit.startup.dataclass import replace
 
 Fields = Mapping[tuple[int, int], Straight]
+FEW = 1024
+"""As many elements of an array of a fixed count, outside of loops, as are never too many."""
 
 
 def in_place(kernel: Kernel, fields: Fields, subject: int = 0) -> Kernel | None:
@@ -67,10 +69,10 @@ def in_place(kernel: Kernel, fields: Fields, subject: int = 0) -> Kernel | None:
 
 
 def without_asking(kernel: Kernel, lanes: frozenset[int]) -> Kernel:
-    """A decoder that asks for no room for lists whose elements are known to be in the message: these are never too many."""
+    """A decoder that asks for no room for lists whose elements are known to be in the message, or few: these are never too many."""
 
-    def kept(block: Block, sure: int = 0) -> Block:
-        """A block that is done for an element of so many bytes, which are there."""
+    def kept(block: Block, sure: int = FEW) -> Block:
+        """A block that is done for an element of so many bytes, which are there, or once, with a few elements that need none."""
         there, found = dict[Expr, int](), list[Stmt]()
         for stmt in block:
             bound = bound_in(stmt)

@@ -589,6 +589,12 @@ inline void copy_numbers(void *target, std::int64_t to, const void *source, std:
     }
 }
 
+/* The same in the header of a unit, so that what calls it stays short. */
+ROSETTA_JIT_APART inline void copy_numbers_apart(void *target, std::int64_t to, const void *source, std::int64_t from, std::int64_t size) noexcept
+{
+    copy_numbers(target, to, source, from, size);
+}
+
 /* Copies bytes by the function of the C library. */
 ROSETTA_JIT_APART inline void copy_apart(unsigned char *target, const unsigned char *source, std::size_t size) noexcept
 {
@@ -655,38 +661,103 @@ inline pair pair_at(const unsigned char *bytes) noexcept
     return found;
 }
 
-/* Whether bytes are ASCII, as most texts are: the first ones and the last ones, which may be the same, and those between. */
-inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
+/* Whether none of more than 32 bytes has any of some bits, which are given for eight: the first ones and the last ones, which may be the same, and
+   those between. */
+template <std::uint64_t Bits> ROSETTA_JIT_APART bool long_without_bits(const unsigned char *bytes, std::int64_t size) noexcept
 {
-    const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
+    const unsigned char *const last = bytes + size - 32;
+    const unsigned char *at = bytes + 32;
+    pair any = (pair_at(bytes) | pair_at(bytes + 16)) | (pair_at(last) | pair_at(last + 16));
+    for (; last - at > 32; at += 64) {
+        any = any | ((pair_at(at) | pair_at(at + 16)) | (pair_at(at + 32) | pair_at(at + 48)));
+    }
+    if (at < last) {
+        any = any | (pair_at(at) | pair_at(at + 16));
+    }
+    return ((any[0] | any[1]) & Bits) == 0;
+}
+
+/* The same of any number of bytes. */
+template <std::uint64_t Bits> ROSETTA_JIT_INLINE bool without_bits(const unsigned char *bytes, std::int64_t size) noexcept
+{
     if (size <= 0) {
         return true;
     }
+    if (size > 32) {
+        return long_without_bits<Bits>(bytes, size);
+    }
     if (size >= 16) {
-        pair any = pair_at(text) | pair_at(text + size - 16);
-        if (size > 32) {
-            const unsigned char *const last = text + size - 32;
-            const unsigned char *at = text + 32;
-            any = any | (pair_at(text + 16) | pair_at(last));
-            for (; last - at > 32; at += 64) {
-                any = any | ((pair_at(at) | pair_at(at + 16)) | (pair_at(at + 32) | pair_at(at + 48)));
-            }
-            if (at < last) {
-                any = any | (pair_at(at) | pair_at(at + 16));
-            }
-        }
-        return ((any[0] | any[1]) & GOES_ON) == 0;
+        const pair any = pair_at(bytes) | pair_at(bytes + size - 16);
+        return ((any[0] | any[1]) & Bits) == 0;
     }
     if (size >= 8) {
-        return ((word_at(text) | word_at(text + size - 8)) & GOES_ON) == 0;
+        return ((word_at(bytes) | word_at(bytes + size - 8)) & Bits) == 0;
     }
     if (size >= 4) {
         std::uint32_t first, last;
-        std::memcpy(&first, text, sizeof first);
-        std::memcpy(&last, text + size - 4, sizeof last);
-        return ((first | last) & 0x80808080u) == 0;
+        std::memcpy(&first, bytes, sizeof first);
+        std::memcpy(&last, bytes + size - 4, sizeof last);
+        return ((first | last) & static_cast<std::uint32_t>(Bits)) == 0;
     }
-    return (text[0] | text[size / 2] | text[size - 1]) < 128;
+    return ((bytes[0] | bytes[size / 2] | bytes[size - 1]) & static_cast<std::uint8_t>(Bits)) == 0;
+}
+
+/* Whether bytes are ASCII, as most texts are. */
+inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
+{
+    return without_bits<GOES_ON>(static_cast<const unsigned char *>(memory) + start, size);
+}
+
+/* Whether a byte of a character lies between two others. */
+inline bool follows(unsigned char byte, unsigned char low, unsigned char high) noexcept
+{
+    return byte >= low && byte <= high;
+}
+
+/* Whether bytes are valid UTF-8 (Unicode 15, table 3-7). */
+ROSETTA_JIT_APART inline bool is_text(const void *memory, std::int64_t start, std::int64_t size) noexcept
+{
+    if (size <= 0) {
+        return true;
+    }
+    const unsigned char *text = static_cast<const unsigned char *>(memory) + start;
+    std::int64_t at = 0;
+    while (at < size) {
+        std::uint64_t eight;
+        if (size - at >= 8) {
+            std::memcpy(&eight, text + at, sizeof eight);
+            if ((eight & GOES_ON) == 0) {
+                at += 8;
+                continue;
+            }
+        } else if (size >= 8) { /* the last eight, some of which have been looked at */
+            std::memcpy(&eight, text + size - 8, sizeof eight);
+            if ((eight & GOES_ON) == 0) {
+                return true;
+            }
+        }
+        const unsigned char first = text[at];
+        if (first < 0x80) {
+            at += 1;
+            continue;
+        }
+        const std::int64_t more = first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3;
+        if (first < 0xc2 || first > 0xf4 || size - at <= more) {
+            return false;
+        }
+        const unsigned char low = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
+        const unsigned char high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
+        if (!follows(text[at + 1], low, high)) {
+            return false;
+        }
+        for (std::int64_t next = 2; next <= more; next++) {
+            if (!follows(text[at + next], 0x80, 0xbf)) {
+                return false;
+            }
+        }
+        at += 1 + more;
+    }
+    return true;
 }
 
 /* The number of the highest bit that is set; of 0 and 1 it is 0. */
@@ -1051,39 +1122,52 @@ ROSETTA_JIT_INLINE void copy_flags(void *target, const void *rows, std::int64_t 
     }
 }
 
+/* Bytes that are bools of a message, from one place and another one, which may be the same in part: false where any is neither 0 nor 1. */
+template <class Bytes> ROSETTA_JIT_INLINE bool read_flags_at(std::uint8_t *rows, const unsigned char *bytes, std::int64_t at, std::int64_t other) noexcept
+{
+    constexpr std::uint64_t OTHERS = ~UINT64_C(0x0101010101010101);
+    Bytes first, second;
+    std::memcpy(&first, bytes + at, sizeof first);
+    std::memcpy(&second, bytes + other, sizeof second);
+    const auto any = first | second;
+    if constexpr (sizeof(Bytes) > 8) {
+        if (((any[0] | any[1]) & OTHERS) != 0) {
+            return false;
+        }
+    } else if ((any & static_cast<Bytes>(OTHERS)) != 0) {
+        return false;
+    }
+    std::memcpy(rows + at, &first, sizeof first);
+    std::memcpy(rows + other, &second, sizeof second);
+    return true;
+}
+
 /* Bools of a message, up to one that is neither 0 nor 1, or some before it: says how many they are. */
 inline std::int64_t read_flags(std::uint8_t *rows, const unsigned char *bytes, std::int64_t count) noexcept
 {
-    const std::uint64_t others = ~UINT64_C(0x0101010101010101);
-    std::uint64_t eight[4];
-    std::int64_t done = 0;
-    for (; count - done >= 32; done += 32) {
-        std::memcpy(eight, bytes + done, 32);
-        if (((eight[0] | eight[1] | eight[2] | eight[3]) & others) != 0) {
-            break;
+    if (count >= 16) {
+        std::int64_t done = 0;
+        for (; count - done > 32; done += 32) {
+            if (!read_flags_at<pair>(rows, bytes, done, done + 16)) {
+                return done;
+            }
         }
-        std::memcpy(rows + done, eight, 32);
+        return read_flags_at<pair>(rows, bytes, std::min(done, count - 16), count - 16) ? count : done;
     }
-    if (count >= 4 && count < 8) {
-        std::uint32_t four[2];
-        std::memcpy(&four[0], bytes, 4);
-        std::memcpy(&four[1], bytes + count - 4, 4);
-        if (((four[0] | four[1]) & static_cast<std::uint32_t>(others)) == 0) {
-            std::memcpy(rows, &four[0], 4);
-            std::memcpy(rows + count - 4, &four[1], 4);
-            return count;
-        }
+    if (count >= 8) {
+        return read_flags_at<std::uint64_t>(rows, bytes, 0, count - 8) ? count : 0;
     }
-    while (count >= 8 && done < count) {
-        const std::int64_t at = std::min(done, count - 8); /* of the last ones some may be set twice */
-        std::memcpy(eight, bytes + at, 8);
-        if ((eight[0] & others) != 0) {
-            break;
-        }
-        std::memcpy(rows + at, eight, 8);
-        done = at + 8;
+    if (count >= 4) {
+        return read_flags_at<std::uint32_t>(rows, bytes, 0, count - 4) ? count : 0;
     }
-    return done;
+    if (count > 0 && (bytes[0] | bytes[count / 2] | bytes[count - 1]) < 2) {
+        const std::uint8_t first = bytes[0], middle = bytes[count / 2], last = bytes[count - 1];
+        rows[0] = first;
+        rows[count / 2] = middle;
+        rows[count - 1] = last;
+        return count;
+    }
+    return 0;
 }
 
 /* The same into elements of a list, which are bytes one behind the other, or not. */
@@ -1513,11 +1597,11 @@ struct has_data : std::bool_constant<is_repeated<Container>::value || shows_data
 
 constexpr std::size_t SHORT_TEXT = 16; /* below which strings need no memory of their own */
 
-/* A number of a loop that copies few. Where they are bytes, a compiler would call the C library's function in place of the loop. */
+/* A number of a loop that copies few: a compiler would call the C library's function in place of the loop. */
 template <class Number> ROSETTA_JIT_INLINE Number one_of_few(Number number) noexcept
 {
 #if defined(__GNUC__)
-    if constexpr (sizeof(Number) == 1) {
+    if constexpr (sizeof(Number) <= sizeof(void *)) {
         __asm__("" : "+r"(number));
     }
 #endif
@@ -1601,6 +1685,26 @@ template <class Memory> ROSETTA_JIT_INLINE void assign(std::vector<std::uint8_t,
     } else {
         assign_other(target, bytes, count);
     }
+}
+
+/* A text of the message that is not empty, if its bytes are one. */
+template <class Text> ROSETTA_JIT_APART bool read_other_text(Text &target, const unsigned char *bytes, std::int64_t size)
+{
+    if (!is_ascii(bytes, 0, size) && !is_text(bytes, 0, size)) {
+        return false;
+    }
+    assign(target, bytes, size);
+    return true;
+}
+
+/* A text of the message, if its bytes are one: nothing is called for one that is empty. */
+template <class Text> ROSETTA_JIT_INLINE bool read_text(Text &target, const unsigned char *bytes, std::int64_t size)
+{
+    if (size == 0) {
+        target.clear();
+        return true;
+    }
+    return read_other_text(target, bytes, size);
 }
 
 /* The rows of a span. Where its count is negative its bytes lie in the message. */
@@ -1914,6 +2018,12 @@ std::enable_if_t<!std::is_pointer_v<Elements>> copy_numbers(Elements target, std
     }
 }
 
+template <class Elements>
+ROSETTA_JIT_APART std::enable_if_t<!std::is_pointer_v<Elements>> copy_numbers_apart(Elements target, std::int64_t to, const unsigned char *source, std::int64_t from, std::int64_t size)
+{
+    copy_numbers(target, to, source, from, size);
+}
+
 template <std::int64_t Size, class Elements>
 std::enable_if_t<!std::is_pointer_v<Elements>> copy_known(Elements target, std::int64_t to, const unsigned char *source, std::int64_t from)
 {
@@ -2118,8 +2228,8 @@ template <class Container, std::size_t Fixed = 0> struct open_lane {
     bool grow(std::int64_t, std::int64_t) const noexcept { return false; }
 };
 
-/* Gives a list as many elements as follow in the message. */
-template <class Container> auto opened(Container &target, std::int64_t count)
+/* Gives a list as many elements as follow in the message, where it has another number of them. */
+template <class Container> ROSETTA_JIT_APART void open_other(Container &target, std::int64_t count)
 {
     if constexpr (can_resize<Container>::value && std::is_constructible_v<element_type<Container>, without_values>) {
         const std::size_t wanted = static_cast<std::size_t>(count);
@@ -2132,8 +2242,13 @@ template <class Container> auto opened(Container &target, std::int64_t count)
             }
         }
     }
+    resize_to(target, count);
+}
+
+template <class Container> ROSETTA_JIT_INLINE auto opened(Container &target, std::int64_t count)
+{
     if (count != count_of(target)) { /* as hardly ever when messages come again and again */
-        resize_to(target, count);
+        open_other(target, count);
     }
     return elements_of(target);
 }
@@ -2143,42 +2258,72 @@ template <class Container, class Row, std::size_t Fixed> struct number_lane : op
     static_assert(same_numbers<typename open_lane<Container>::Element, Row>, ROSETTA_JIT_OTHER_ELEMENTS);
 };
 
-/* The same of texts. Those that a list lacks are made of their characters where that can be. */
-template <class Container> struct text_lane {
-    std::int64_t capacity = 0;
-    std::int64_t used = 0;
+/* The texts of a list, of which some are there. Those that it lacks are made of their characters where that can be. */
+template <class Container> struct texts_of {
     Container *container = nullptr;
+    std::int64_t there = 0;
 
-    void reset(std::int64_t most) noexcept
-    {
-        capacity = most;
-        used = 0;
-    }
-
-    bool grow(std::int64_t, std::int64_t) const noexcept { return false; }
-
-    void open(Container &target, std::int64_t count)
-    {
-        container = &target;
-        if constexpr (appends_texts<Container>::value) {
-            if (count > count_of(target)) {
-                target.reserve(static_cast<std::size_t>(count));
-                return;
-            }
-        }
-        resize_to(target, count);
-    }
-
-    void put(std::int64_t index, const unsigned char *bytes, std::int64_t size)
+    ROSETTA_JIT_INLINE void put(std::int64_t index, const unsigned char *bytes, std::int64_t size) const
     {
         if constexpr (appends_texts<Container>::value) {
-            if (index >= count_of(*container)) {
-                container->emplace_back(reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(size));
+            if (index >= there) {
+                append(*container, bytes, size);
                 return;
             }
         }
         assign(element(*container, index), bytes, size);
     }
+
+    /* The same of bytes that may not be a text. */
+    ROSETTA_JIT_INLINE bool read(std::int64_t index, const unsigned char *bytes, std::int64_t size) const
+    {
+        if constexpr (appends_texts<Container>::value) {
+            if (index >= there) {
+                return is_text(bytes, 0, size) && (append(*container, bytes, size), true);
+            }
+        }
+        return read_text(element(*container, index), bytes, size);
+    }
+
+private:
+    ROSETTA_JIT_APART static void append(Container &target, const unsigned char *bytes, std::int64_t size)
+    {
+        target.emplace_back(reinterpret_cast<const char *>(bytes), static_cast<std::size_t>(size));
+    }
+};
+
+/* Gives a list of texts as many as follow in the message, or room for them, where it has another number of them. */
+template <class Container> ROSETTA_JIT_APART std::int64_t texts_there(Container &target, std::int64_t count)
+{
+    if constexpr (appends_texts<Container>::value) {
+        if (count > count_of(target)) {
+            target.reserve(static_cast<std::size_t>(count));
+            return count_of(target);
+        }
+    }
+    resize_to(target, count);
+    return count;
+}
+
+template <class Container> ROSETTA_JIT_INLINE texts_of<Container> opened_texts(Container &target, std::int64_t count)
+{
+    return {&target, count == count_of(target) ? count : texts_there(target, count)};
+}
+
+/* The same of lists of texts. */
+template <class Container> struct text_lane {
+    texts_of<Container> rows;
+    std::int64_t capacity = 0;
+    std::int64_t used = 0;
+
+    void reset(std::int64_t most) noexcept
+    {
+        rows = {};
+        capacity = most;
+        used = 0;
+    }
+
+    bool grow(std::int64_t, std::int64_t) const noexcept { return false; }
 };
 
 template <class Message, class = void> struct shows_unknown : std::false_type {};

@@ -51,16 +51,22 @@ rosetta_jit::detail::sized<$row>($at, $count)
 $lane = rosetta_jit::detail::opened($at, $count);
 
 /* == open texts == */
-holder->$lane.open($at, $count);
+$lane = rosetta_jit::detail::opened_texts($at, $count);
 
 /* == emptied == */
 rosetta_jit::detail::resize_to($at, 0);
 
 /* == text of a list == */
-holder->$lane.put($index, bytes + ($start), $size);
+$lane.put($index, bytes + ($start), $size);
 
-/* == text in place == */
+/* == text == */
 rosetta_jit::detail::assign($at, bytes + ($start), $size);
+
+/* == checked text of a list == */
+$lane.read($index, bytes + ($start), $size)
+
+/* == checked text == */
+rosetta_jit::detail::read_text($at, bytes + ($start), $size)
 
 /* == element decode == */
 rosetta_jit::detail::element($at, $index)
