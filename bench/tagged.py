@@ -94,6 +94,7 @@ TAGGED = {
     "20 messages of 40 lists, one of which is there": _subject(
         f"message Row {{ {_lists(40)} }} repeated Row rows = 1;", _sized(10, _sized(10, b"abc")) * 20
     ),
+    "a message that may contain its own type, one of 40 lists": _subject(f"{_lists(40)} repeated M kids = 41;", _sized(10, b"abcdefgh")),
     "a oneof of 12 cases": _subject(
         f"oneof which {{ {' '.join(f'{type_} f{n} = {n};' for n, type_ in enumerate(_KINDS[:12], 1))} }}", b"\x0a\x01a"
     ),

@@ -80,3 +80,31 @@ def test_objects_in_a_tree_are_of_their_class_and_have_all_lists():
     root.kids[0].l7.append("more")
     assert root.kids[0] == unit.M(l7=["more"])
     assert root.kids[1].l7 == []
+
+
+def test_a_message_without_rows_of_its_own_type_begins_nothing_for_them():
+    wide = protobuf(f"message M {{ repeated M kids = 1; {' '.join(f'repeated {KINDS[at % 6]} l{at} = {at + 2};' for at in range(30))} }}")
+    source = source_of(type_request("decode", "t.M", wide))
+    called, begun = source.index(" = _borrow_1_rows("), source.index("def _borrow_1(")
+    assert source[called:].splitlines()[0].endswith("if kids_used else ()")
+    assert "kids_l1" not in source[begun:called]
+    unit = module(type_request("decode", "t.M", wide))
+    assert type(unit.decode(b"")).__mro__ == type(unit.M()).__mro__
+    root = unit.decode(unit.encode(unit.M(l0=[5])))
+    assert type(root) is not unit.M
+    assert (root.l0, root.kids, root.l29) == ([5], [], [])
+    assert unit.decode(unit.encode(unit.M(kids=[unit.M()]))) == unit.M(kids=[unit.M()])
+
+
+def test_messages_of_other_types_and_maps_take_their_rows_from_those_that_are_made_apart():
+    options = protobuf(
+        "message M { repeated Pair pairs = 1; map<string, N> named = 2; oneof one { N first = 3; N second = 4; } N last = 5; } "
+        "message Pair { N left = 1; N right = 2; } message N { int32 value = 1; repeated N kids = 2; repeated M others = 3; }"
+    )
+    unit = module(type_request("decode", "t.M", options))
+    one, two = unit.N(value=1), unit.N(value=2, kids=[unit.N(value=3)], others=[unit.M(last=unit.N(value=4))])
+    made = unit.M(pairs=[unit.Pair(left=one), unit.Pair(left=two, right=one)], named={"a": two, "b": unit.N()}, last=two)
+    messages = [unit.encode(made), b"\x1a\x02\x08\x07\x22\x02\x08\x08", b"\x12\x03\x0a\x01x", b""]
+    programs = rj.Decoder.of("t.M", **options), rj.Encoder.of("t.M", **options)
+    assert unit.decode(messages[0]) == made
+    answers_as_the_library(unit, programs, [*messages, *harmed(messages, 12, "9")])

@@ -300,7 +300,8 @@ class Make:
     def row(self, type_: Type, lane: int, index: str) -> str:
         """The object of a row; those of types that contain themselves are made by a function."""
         if self.unit.layout.lanes[lane].links is not None:
-            return f"made_{self.scope.lanes.rows(lane)}({index})"
+            made = f"made_{self.scope.lanes.rows(lane)}"
+            return f"{made}[{index}]" if self.scope.has_rows_apart else f"{made}({index})"
         return self.value(type_, self.unit.layout.lanes[lane].element, lane, index)
 
     def one_by_one(self, type_: String | Bytes | Array | Map, lane: int, count: str) -> str:  # noqa: ARG002 - of others

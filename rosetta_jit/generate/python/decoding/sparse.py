@@ -132,8 +132,14 @@ def settings(make: Make) -> Iterator[str]:
     if slot.unknown is not None:
         yield f"{OBJECT}.unknown_fields = {make.unknown(slot.unknown, 0, '0')}"
     if lines:
-        has = [make.scope.any_lists(group) for group, _ in enumerate(lines)]
+        has = [_has_any(make, number, group) for number, group in enumerate(make.scope.lists)]
         yield from set_groups(OBJECT, make.names[unit.type], [*zip(has, lines, strict=True)])
+
+
+def _has_any(make: Make, number: int, group: tuple[Span, ...]) -> str:
+    """What is true where any list of a group has come."""
+    rows = [make.count_of(each, 0, "0") for each in group if make.scope.direct.late_at(each) is None]
+    return " or ".join([*([make.scope.any_lists(number)] if len(rows) < len(group) else []), *rows])
 
 
 def _fields(make: Make) -> Iterator[tuple[Field, Member, str]]:

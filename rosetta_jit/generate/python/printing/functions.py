@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Sequence, Set
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from rosetta_jit.backends.printing import Writer
@@ -23,19 +23,20 @@ from rosetta_jit.generate.python.passes.late_fields import late_fields
 from rosetta_jit.generate.python.passes.late_rows import with_late_rows
 from rosetta_jit.generate.python.passes.local_names import Locals
 from rosetta_jit.generate.python.passes.mentions import blocks_within
+from rosetta_jit.generate.python.passes.rows_apart import NO_ROWS, rows_apart
 from rosetta_jit.generate.python.passes.rows_of_pieces import with_rows_of_pieces
 from rosetta_jit.generate.python.passes.search import FEW, direct
 from rosetta_jit.generate.python.passes.sums import ends_first, with_locals
+from rosetta_jit.generate.python.printing.beginning import begin, completed, lanes_of_function
 from rosetta_jit.generate.python.printing.classes import WORDS
 from rosetta_jit.generate.python.printing.expressions import expression
-from rosetta_jit.generate.python.printing.late_lists import said_to_come
 from rosetta_jit.generate.python.printing.printed import Attempt, Function, Objects
-from rosetta_jit.generate.python.printing.scope import CODES, Scope, flat_name, view_name
+from rosetta_jit.generate.python.printing.rows_apart import print_rows_apart
+from rosetta_jit.generate.python.printing.scope import CODES, Scope, view_name
 from rosetta_jit.generate.python.printing.statements import print_block
 from rosetta_jit.generate.python.printing.unasked import unasked_words, without_words
 from rosetta_jit.generate.python.printing.visiting import OF_READERS, counts_of_rows, print_readers, with_copy
-from rosetta_jit.generate.shares import moved_lanes
-from rosetta_jit.generate.unit import Role, kind_of
+from rosetta_jit.generate.unit import Role
 from rosetta_jit.kernel import ir, nodes
 from rosetta_jit.kernel.terms import index, type_of
 from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
@@ -179,55 +180,27 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
     measured = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, nodes.Capacity)}
     function.outside = {stmt.lane for stmt in body if isinstance(stmt, nodes.Reserve)} - measured - {*kernel.kept}
-    print_block(function, body)
-    made = objects.inner(scope) if descents is None else counts_of_rows(descents, scope)
     name = f"_{role}_{number + 1}"
-    parameters = _parameters(function, own_only=kernel.direction != "decode")
+    apart = NO_ROWS
+    if kernel.direction == "decode" and scope.flat and objects.layout is not None and descents is None:
+        body, apart = rows_apart(body, kernel, objects.layout)
     _blank(writer)
-    lines = [each for line in function.writer.lines for each in _completed(line, function)]
+    without = frozenset[int]()
+    if apart:
+        without, lines = print_rows_apart(function, role, body, apart, f"{name}_rows")
+        writer.lines += [*lines, "", ""]
+        made = list[str]()
+    else:
+        print_block(function, body)
+        made = objects.inner(scope) if descents is None else counts_of_rows(descents, scope)
+    parameters = _parameters(function, own_only=kernel.direction != "decode")
+    lines = [each for line in function.writer.lines for each in completed(line, function)]
     is_bounded = kernel.direction != "decode" or any(re.search(r"\bmost\b", line) for line in (*made, *lines))
     writer.line(f"def {name}({', '.join(['data', 'end', *(['most'] if is_bounded else []), *parameters])}):")
-    for line in (*_begin(function, role), *made, *objects.begun(scope)):
+    for line in (*begin(function, role, without), *made, *objects.begun(scope)):
         writer.line(f"    {line}" if line else "")
     writer.lines += lines
     return Attempt(name, tuple(parameters), is_bounded=is_bounded)
-
-
-def _completed(line: str, function: Function) -> list[str]:
-    """A line, or what it stands for: all fields of a part of the row, all views of a lane that has grown."""
-    scope, text = function.scope, line.strip()
-    before = line[: len(line) - len(line.lstrip())]
-    if text.startswith("<row "):
-        begin, size = map(int, text[5:-1].split())
-        if size == scope.lanes.stride(0):
-            rows = scope.rows - {flat_name(scope.lanes, *each) for each in function.settled}
-            offsets = {*range(size)} - {offset for late in scope.direct.fields for offset in late.offsets}
-            rows -= {name for name in rows if scope.offsets.get(name, 0) not in offsets}
-        else:
-            offsets = {*range(begin, begin + size)}
-            rows = {name for name, offset in scope.offsets.items() if offset in offsets}
-        return [f"{before}{each}" for each in _cleared(scope, rows, offsets)]
-    if text.startswith("<late "):
-        late, said = scope.direct.fields[int(text[6:-1])], said_to_come(scope, int(text[6:-1]))
-        rows = {name for name, offset in scope.offsets.items() if offset in late.offsets}
-        lines = [f"{' = '.join(said)} = True", *_empty(function, _lanes(function) & late.lanes), *_cleared(scope, rows, late.offsets)]
-        return [f"{before}if not {said[0]}:", *(f"{before}    {each}" for each in lines)]
-    if text.startswith("<views "):
-        lane = int(text[7:-1])
-        name = scope.lanes.rows(lane)
-        codes = sorted(code for number, code in scope.views if number == lane and code)
-        return [f'{before}{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
-    return [line]
-
-
-def _cleared(scope: Scope, rows: Set[str], offsets: Set[int]) -> list[str]:
-    """The lines that set some ``rows``, which are locals, to 0, and the texts and bytes at some offsets to nothing."""
-    late = [span for span in scope.direct.late if span[1] in offsets and span[1] not in (scope.attributes or ())]
-    texts = {scope.text(*span) for span in late if span in scope.direct.texts}
-    pieces = {scope.piece(*span) for span in late if span in scope.direct.pieces}
-    numbers = rows - scope.floats - scope.bools
-    groups = ((numbers, "0"), (rows & scope.floats, "0.0"), (rows & scope.bools, "False"), (texts, '""'), (pieces, 'b""'))
-    return [f"{' = '.join(sorted(group))} = {zero}" for group, zero in groups if group]
 
 
 def _parameters(function: Function, *, own_only: bool) -> list[str]:
@@ -245,71 +218,8 @@ def _parameters(function: Function, *, own_only: bool) -> list[str]:
     }
     if function.is_routine:
         names |= {f"{scope.lanes.rows(lane)}_room" for lane in scope.rooms if lane >= own}
-    names |= {scope.lanes.rows(lane) for lane in _lanes(function) if lane in function.measured}
+    names |= {scope.lanes.rows(lane) for lane in lanes_of_function(function) if lane in function.measured}
     return sorted(names)
-
-
-def _lanes(function: Function) -> set[int]:
-    """The lanes that a function has to do with."""
-    scope = function.scope
-    return {lane for lane, _ in scope.views} | scope.rooms | scope.counted | function.moved
-
-
-def chained(lines: list[str]) -> list[str]:
-    """Assignments, of which those of the same number, view or rows are one."""
-    found: dict[str, list[str]] = {}
-    for line in lines:
-        name, _, value = line.partition(" = ")
-        is_constant = value in ("0", "False", "_NOTHING") or value.startswith("_EMPTY_")
-        found.setdefault(value if is_constant else line, []).append(name)
-    return [f"{' = '.join(names)} = {value}" if " = " not in value else value for value, names in found.items()]
-
-
-def _begin(function: Function, role: Role) -> list[str]:
-    """Lanes that start empty, or as another message has left them, and views of those that are given."""
-    kept, moved, kind = function.kernel.kept, moved_lanes(function.kernel), kind_of(role)
-    scope, own, lines = function.scope, function.scope.lanes.own, list[str]()
-    late = scope.direct.fields
-    for lane in sorted(_lanes(function) - {0}.union(*(each.lanes for each in late))):
-        name = scope.lanes.rows(lane)
-        codes = sorted(code for number, code in scope.views if number == lane and code)
-        if lane < own and kind in ("encode", "size"):
-            continue
-        if lane in kept or lane in moved:
-            lines.append(f'{name} = bytearray(_rows["{name}"])')
-            lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
-            lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
-            used = f"len({name}) // {scope.lanes.stride(lane)}" if lane in kept else "0"
-            lines += [f"{name}_used = {used}"] if lane in scope.counted else []
-            continue
-        if lane in function.measured:
-            lines += [f"{name}_room = len({name}) // {scope.lanes.stride(lane)}"] if lane in scope.rooms else []
-            lines += [f'{name}_{code} = memoryview({name}).cast("{code}")' for code in codes]
-            lines += [f"{name}_used = 0"] if lane in scope.counted else []
-        else:
-            lines += _empty_lane(function, lane)
-    said = dict.fromkeys(each for number, _ in enumerate(late) for each in said_to_come(scope, number))
-    lines = chained([*lines, *(f"{each} = False" for each in said)])
-    if not scope.flat and kind in ("decode", "borrow"):
-        lines.append('message = bytearray(_rows["message"])' if kept else f"message = bytearray({scope.lanes.stride(0)})")
-        lines += [f'message_{code} = memoryview(message).cast("{code}")' for lane, code in sorted(scope.views) if lane == 0 and code]
-    return lines
-
-
-def _empty_lane(function: Function, lane: int) -> list[str]:
-    """The locals of a lane that has no row yet."""
-    scope, name = function.scope, function.scope.lanes.rows(lane)
-    codes = sorted(code for number, code in scope.views if number == lane and code)
-    scope.loads.update(f"_EMPTY_{code}" for code in codes)
-    lines = [f"{name} = {'[]' if lane in scope.direct.gathered else '_NOTHING'}"]
-    lines += [f"{name}_room = 0"] if lane in scope.rooms else []
-    lines += [f"{name}_{code} = _EMPTY_{code}" for code in codes]
-    lines += [f"{scope.placed(*span)} = {{}}" for span in scope.direct.placed if span[0] == lane]
-    return [*lines, f"{name}_used = 0"] if lane in scope.counted else lines
-
-
-def _empty(function: Function, lanes: Set[int]) -> list[str]:
-    return chained([line for lane in sorted(lanes) for line in _empty_lane(function, lane)])
 
 
 def _blank(writer: Writer) -> None:

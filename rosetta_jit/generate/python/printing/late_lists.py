@@ -60,8 +60,12 @@ def lists_of(struct: Struct, slot: Row, unit: Unit, least: int) -> tuple[Span, .
 def late_lists(unit: Unit, scope: Scope) -> tuple[tuple[Span, ...], ...]:
     """The groups of lists that the object of a message may lack; nothing where its lists are made whatever comes."""
     lists = lists_of_message(unit)
-    is_late = scope.attributes is not None and all(scope.direct.late_at(each) is not None for each in lists)
-    return groups_of(lists) if is_late else ()
+
+    def is_late(span: Span) -> bool:
+        """Whether a local says that the list has come: its own, or the number of its messages, whose type contains itself."""
+        return scope.direct.late_at(span) is not None or unit.layout.lanes[span.lane].links is not None
+
+    return groups_of(lists) if scope.attributes is not None and all(map(is_late, lists)) else ()
 
 
 def name_without_lists(identifier: str) -> str:

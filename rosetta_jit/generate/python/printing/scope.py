@@ -54,7 +54,8 @@ class Scope:
     ``sums`` those that are sums, ``allowed`` the numbers of rows that the message is known to be allowed.
     ``unpacked`` are rows, by lane and index, whose numbers are locals of a comprehension: it gets their types by offset.
     ``attributes`` are the fields of the message's row that are the object's at once, by offset, if it is made first; ``lists`` are
-    the groups of lists that it may lack then.
+    the groups of lists that it may lack then. ``has_rows_apart``: the message's own rows of types that contain themselves are objects,
+    in a list for each lane, which a function of their own has made.
     """
 
     locals: Locals
@@ -74,6 +75,7 @@ class Scope:
     direct: Direct = field(default_factory=Direct)
     attributes: dict[int, str] | None = None
     lists: tuple[tuple[Span, ...], ...] = ()
+    has_rows_apart: bool = False
     numpy: bool = False
     small: set[str] = field(default_factory=set[str])
     sums: dict[nodes.Expr, str] = field(default_factory=dict[nodes.Expr, str])

@@ -129,7 +129,7 @@ def _return(function: Function, stmt: nodes.Return) -> None:
     for line in objects.settings(function.scope):
         function.line(line)
     result = objects.result(function.scope, position)
-    if names := objects.inner_names(function.scope) if function.scope.direct.left is None else []:
+    if names := objects.inner_names(function.scope) if function.scope.direct.left is None and not function.scope.has_rows_apart else []:
         made = function.scope.locals.identifier("made\0message")
         function.line(f"{made} = {result}")
         function.line(f"del {', '.join(names)}")
