@@ -133,8 +133,7 @@ def _copy(scope: Scope, target: nodes.Address, source: nodes.Address, count: nod
     copied = ", ".join((*location(scope, target), *location(scope, source), size))
     lanes = [each.lane for each in (target, source) if isinstance(each, nodes.Place)]
     if scope.lanes.dialect == "c++" and any(scope.lanes.stride(lane) > 1 or lane in scope.lanes.opened for lane in lanes):
-        apart = "_apart" if scope.lanes.shared and isinstance(target, nodes.Place) else ""
-        return f"rosetta_jit::detail::copy_numbers{apart}({copied});"
+        return f"rosetta_jit::detail::copy_numbers({copied});"
     if scope.lanes.dialect == "c++" and isinstance(source, nodes.Place):
         return f"rosetta_jit::detail::copy_few({copied});"
     return f"{scope.calls('copy_bytes')}({copied});"

@@ -589,12 +589,6 @@ inline void copy_numbers(void *target, std::int64_t to, const void *source, std:
     }
 }
 
-/* The same in the header of a unit, so that what calls it stays short. */
-ROSETTA_JIT_APART inline void copy_numbers_apart(void *target, std::int64_t to, const void *source, std::int64_t from, std::int64_t size) noexcept
-{
-    copy_numbers(target, to, source, from, size);
-}
-
 /* Copies bytes by the function of the C library. */
 ROSETTA_JIT_APART inline void copy_apart(unsigned char *target, const unsigned char *source, std::size_t size) noexcept
 {
@@ -661,51 +655,38 @@ inline pair pair_at(const unsigned char *bytes) noexcept
     return found;
 }
 
-/* Whether none of more than 32 bytes has any of some bits, which are given for eight: the first ones and the last ones, which may be the same, and
-   those between. */
-template <std::uint64_t Bits> ROSETTA_JIT_APART bool long_without_bits(const unsigned char *bytes, std::int64_t size) noexcept
+/* Whether bytes are ASCII, as most texts are: the first ones and the last ones, which may be the same, and those between. */
+inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
 {
-    const unsigned char *const last = bytes + size - 32;
-    const unsigned char *at = bytes + 32;
-    pair any = (pair_at(bytes) | pair_at(bytes + 16)) | (pair_at(last) | pair_at(last + 16));
-    for (; last - at > 32; at += 64) {
-        any = any | ((pair_at(at) | pair_at(at + 16)) | (pair_at(at + 32) | pair_at(at + 48)));
-    }
-    if (at < last) {
-        any = any | (pair_at(at) | pair_at(at + 16));
-    }
-    return ((any[0] | any[1]) & Bits) == 0;
-}
-
-/* The same of any number of bytes. */
-template <std::uint64_t Bits> ROSETTA_JIT_INLINE bool without_bits(const unsigned char *bytes, std::int64_t size) noexcept
-{
+    const unsigned char *const text = static_cast<const unsigned char *>(memory) + start;
     if (size <= 0) {
         return true;
     }
-    if (size > 32) {
-        return long_without_bits<Bits>(bytes, size);
-    }
     if (size >= 16) {
-        const pair any = pair_at(bytes) | pair_at(bytes + size - 16);
-        return ((any[0] | any[1]) & Bits) == 0;
+        pair any = pair_at(text) | pair_at(text + size - 16);
+        if (size > 32) {
+            const unsigned char *const last = text + size - 32;
+            const unsigned char *at = text + 32;
+            any = any | (pair_at(text + 16) | pair_at(last));
+            for (; last - at > 32; at += 64) {
+                any = any | ((pair_at(at) | pair_at(at + 16)) | (pair_at(at + 32) | pair_at(at + 48)));
+            }
+            if (at < last) {
+                any = any | (pair_at(at) | pair_at(at + 16));
+            }
+        }
+        return ((any[0] | any[1]) & GOES_ON) == 0;
     }
     if (size >= 8) {
-        return ((word_at(bytes) | word_at(bytes + size - 8)) & Bits) == 0;
+        return ((word_at(text) | word_at(text + size - 8)) & GOES_ON) == 0;
     }
     if (size >= 4) {
         std::uint32_t first, last;
-        std::memcpy(&first, bytes, sizeof first);
-        std::memcpy(&last, bytes + size - 4, sizeof last);
-        return ((first | last) & static_cast<std::uint32_t>(Bits)) == 0;
+        std::memcpy(&first, text, sizeof first);
+        std::memcpy(&last, text + size - 4, sizeof last);
+        return ((first | last) & 0x80808080u) == 0;
     }
-    return ((bytes[0] | bytes[size / 2] | bytes[size - 1]) & static_cast<std::uint8_t>(Bits)) == 0;
-}
-
-/* Whether bytes are ASCII, as most texts are. */
-inline bool is_ascii(const void *memory, std::int64_t start, std::int64_t size) noexcept
-{
-    return without_bits<GOES_ON>(static_cast<const unsigned char *>(memory) + start, size);
+    return (text[0] | text[size / 2] | text[size - 1]) < 128;
 }
 
 /* Whether a byte of a character lies between two others. */
@@ -1687,8 +1668,8 @@ template <class Memory> ROSETTA_JIT_INLINE void assign(std::vector<std::uint8_t,
     }
 }
 
-/* A text of the message that is not empty, if its bytes are one. */
-template <class Text> ROSETTA_JIT_APART bool read_other_text(Text &target, const unsigned char *bytes, std::int64_t size)
+/* A text of the message that is not empty, if its bytes are one. A compiler calls this where a message has many texts. */
+template <class Text> bool read_other_text(Text &target, const unsigned char *bytes, std::int64_t size)
 {
     if (!is_ascii(bytes, 0, size) && !is_text(bytes, 0, size)) {
         return false;
@@ -2016,12 +1997,6 @@ std::enable_if_t<!std::is_pointer_v<Elements>> copy_numbers(Elements target, std
     for (std::int64_t at = 0; at < size; at += STEP) {
         std::memcpy(&target[static_cast<std::ptrdiff_t>((to + at) / STEP)], source + from + at, STEP);
     }
-}
-
-template <class Elements>
-ROSETTA_JIT_APART std::enable_if_t<!std::is_pointer_v<Elements>> copy_numbers_apart(Elements target, std::int64_t to, const unsigned char *source, std::int64_t from, std::int64_t size)
-{
-    copy_numbers(target, to, source, from, size);
 }
 
 template <std::int64_t Size, class Elements>
