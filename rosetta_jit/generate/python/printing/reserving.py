@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.python.passes.groups import ALWAYS
 from rosetta_jit.kernel.nodes import Const, Expr
+from rosetta_jit.model.layout import Row, Slot
 
 if TYPE_CHECKING:
     from rosetta_jit.generate.python.printing.printed import Function
@@ -50,14 +51,20 @@ def take(function: Function, lane: int, count: str) -> None:
 
 
 def _reserve_once(function: Function, lane: int, count: str) -> None:
-    """Rows of a lane that has none yet, and gets no others."""
-    scope, stride = function.scope, function.scope.lanes.stride(lane)
+    """Rows of a lane that has none yet, and gets no others: of structs without fields only their number matters."""
+    scope, stride, layout = function.scope, function.scope.lanes.stride(lane), function.objects.layout
     with function.writer.indented(f"if {count} > most:"):
         function.line(f"raise _Failed(0, 0, ({_path(scope, lane)},))")
+    if layout is not None and lane < len(layout.lanes) and _has_no_fields(layout.lanes[lane].element):
+        return
     size = count if stride == 1 else f"{stride} * ({count})" if " " in count else f"{stride} * {count}"
     function.line(f"{scope.view(lane, '')} = bytearray({size})")
     function.line(f"<views {lane}>")
     function.moved.add(lane)
+
+
+def _has_no_fields(row: Slot) -> bool:
+    return isinstance(row, Row) and not (row.members or row.presence_words or row.unknown)
 
 
 def _path(scope: Scope, lane: int) -> str:
