@@ -70,6 +70,25 @@ int main()
 }
 """
 
+NAMED = 'syntax = "proto3"; package t; message M { int32 value = 1; string name = 2; repeated M kids = 3; }'
+UNMEASURED = """#include "unit.hpp"
+#include <cstdio>
+int main()
+{
+    unit::codec first, second;
+    unit::holder holder;
+    holder.kids.resize(2);
+    holder.kids[0].name = "one";
+    holder.kids[1].kids.resize(1);
+    holder.kids[1].kids[0].value = 300;
+    unsigned char bytes[64];
+    std::string again;
+    const auto size = first.try_encode(holder, bytes, sizeof bytes);
+    const bool same = size && second.try_encode(holder, again) && again == std::string(reinterpret_cast<char *>(bytes), *size);
+    std::printf("%s\\n", same ? "the same" : "other bytes");
+}
+"""
+
 
 def varint(value: int) -> bytes:
     return bytes([value]) if value < 128 else bytes([value & 127 | 128]) + varint(value >> 7)
@@ -190,6 +209,16 @@ def test_an_object_that_is_too_deep(tmp_path):
     found = subprocess.run([made], check=True, capture_output=True, text=True).stdout
     refused = "nesting: a message contains itself, or too many within each other"
     assert found.splitlines() == [*["written"] * 4, *[refused] * 4]
+
+
+@cpp.needs_cpp
+def test_an_object_that_nobody_has_measured(tmp_path):
+    """A buffer that is given gets the bytes that a text does."""
+    (tmp_path / "unmeasured.cpp").write_text(UNMEASURED)
+    request = type_request("decode", "t.M", {"encoding": "protobuf", "schema": {"t.proto": NAMED}})
+    unit = cpp.write(tmp_path, generated(request, "cpp", BOTH, "unit"))
+    made = cpp.program(tmp_path, unit, options=QUICK, main=tmp_path / "unmeasured.cpp")
+    assert subprocess.run([made], check=True, capture_output=True, text=True).stdout == "the same\n"
 
 
 def options_of(name):

@@ -6,17 +6,20 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from rosetta_jit.generate.c.holder.lanes import Lanes
-from rosetta_jit.generate.c.printing.functions import Attempt
+from rosetta_jit.generate.c.printing.functions import Attempt, Printed
 from rosetta_jit.generate.c.source import run
 from rosetta_jit.generate.cpp.encoding.lists_within import lists_within
-from rosetta_jit.generate.cpp.encoding.messages_within import has_lengths, visited_lanes
+from rosetta_jit.generate.cpp.encoding.messages_within import descents_of, has_lengths, visited_lanes
 from rosetta_jit.generate.cpp.encoding.read_in_place import addressed_lanes, is_local
 from rosetta_jit.generate.cpp.objects.always import directs
 from rosetta_jit.generate.cpp.objects.lists import row_name, viewed
 from rosetta_jit.generate.cpp.objects.spots import Direct, Listed, container_type
 from rosetta_jit.generate.cpp.objects.walk import Walk
 from rosetta_jit.generate.passes.cleared import offsets_of, slots_of
+from rosetta_jit.generate.passes.work_lists import is_hidden
 from rosetta_jit.generate.unit import Unit, wires_of
+from rosetta_jit.kernel.nodes import Get
+from rosetta_jit.kernel.walk import expressions_of, statements, subexpressions
 from rosetta_jit.model.layout import Row
 from rosetta_jit.startup.dataclass import replace
 
@@ -59,7 +62,7 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
     lanes, encode, size = parts.lanes, parts.printed["encode"], parts.printed["size"].attempts[0]
     is_straight, memory, row = is_local(walk, encode.hidden), "written_" if writes_apart(unit) else "memory_", lanes.type(0)
     begun = (f"    holder->{lanes.rows(lane)}.{emptying(walk, lane)};" for lane in copied(parts, directs, walk))
-    measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if encode.hidden else ""
+    measure = Template(known["measure"]).substitute(no_room=str(len(encode.sites)), memory=memory) if _is_measured(unit, encode) else ""
     return Template(known["encode"]).substitute(
         words,
         row=row,
@@ -81,6 +84,14 @@ def encoder(unit: Unit, parts: Parts, known: dict[str, str], words: dict[str, st
         known="    holder->given_lengths.known = holder->scratch[0].bytes;" if has_lengths(unit) else "",
         measure=measure,
     )
+
+
+def _is_measured(unit: Unit, encode: Printed) -> bool:
+    """Whether what writes reads sizes that are measured before: in memory of its own, or in the rows of messages within others."""
+    nodes = (stmt for body in unit.kernels["encode"].bodies for stmt, _ in statements(body))
+    parts = (part for stmt in nodes for expr in expressions_of(stmt) for part in subexpressions(expr))
+    in_rows = any(isinstance(part, Get) and is_hidden(part.place, unit.layout) for part in parts)
+    return bool(encode.hidden) or (in_rows and not descents_of(unit))
 
 
 def _tried(unit: Unit, known: dict[str, str], row: str, attempt: Attempt) -> str:
