@@ -33,7 +33,7 @@ public:
     codec &operator=(codec &&) noexcept;
 
     /* Reads a message. After a failure the holder is in a valid state, and what it has is not said. */
-    ROSETTA_JIT_INLINE rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target)
+    rosetta_jit::result<rosetta_jit::done> try_decode(const void *bytes, std::size_t size, holder &target)
     {
         return decode_any(bytes, size, target);
     }
