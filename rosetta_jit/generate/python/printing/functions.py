@@ -152,7 +152,8 @@ def _nested(writer: Writer, role: Role, number: int, function: Callable[[], Func
     return attempt
 
 
-def _attempt(writer: Writer, role: Role, number: int, function: Function, descents: Descents | None = None) -> Attempt:
+def _known_body(function: Function, number: int, descents: Descents | None) -> nodes.Block:
+    """A body as it is printed; the function is told what is known of it."""
     kernel, scope, objects = function.kernel, function.scope, function.objects
     body = reached(kernel.bodies[number]) if descents is None else descents.body
     body = with_locals(with_bytes(with_constants(body))) if kernel.direction == "decode" else undamaged(body, kernel.sites)
@@ -168,18 +169,31 @@ def _attempt(writer: Writer, role: Role, number: int, function: Function, descen
         body, scope.direct.checks = with_late_checks(body, descents.visits)
         scope.direct.visits, scope.direct.left, behind = descents.visits, descents.left, descents.behind()
     assert {number for each in scope.direct.fields for number in each.cases} <= {*map(id, blocks_within(body))}
+    _tell(function, body)
+    function.positive = not_negative(checked, behind)
+    return body
+
+
+def _tell(function: Function, body: nodes.Block) -> None:
+    """What the statements of a body need of its function."""
+    kernel, scope, objects = function.kernel, function.scope, function.objects
     function.settled = settled(body)
     if kernel.direction == "decode" and scope.flat:
         scope.attributes = objects.attributes(body, function.settled, scope.direct)
         scope.lists = objects.late_lists(scope)
     function.unasked = unasked_words(body, objects.layout, scope)
     function.read = read_names(without_words(body, function.unasked), scope.direct.read())
-    function.positive = not_negative(checked, behind)
     function.reserved = Counter(stmt.lane for stmt, _ in statements(body) if isinstance(stmt, nodes.Reserve))
     blocks = (body, *(routine.body for routine in kernel.routines))
     exprs = (expr for block in blocks for stmt, _ in statements(block) for expr in expressions_of(stmt))
     measured = {part.lane for expr in exprs for part in subexpressions(expr) if isinstance(part, nodes.Capacity)}
     function.outside = {stmt.lane for stmt in body if isinstance(stmt, nodes.Reserve)} - measured - {*kernel.kept}
+
+
+def _attempt(writer: Writer, role: Role, number: int, function: Function, descents: Descents | None = None) -> Attempt:
+    """The function of a body, behind one for its rows of types that contain themselves, if that is apart."""
+    kernel, scope, objects = function.kernel, function.scope, function.objects
+    body = _known_body(function, number, descents)
     name = f"_{role}_{number + 1}"
     apart = NO_ROWS
     if kernel.direction == "decode" and scope.flat and objects.layout is not None and descents is None:
