@@ -1124,7 +1124,7 @@ template <class Bytes> ROSETTA_JIT_INLINE bool read_flags_at(std::uint8_t *rows,
 }
 
 /* Bools of a message, up to one that is neither 0 nor 1, or some before it: says how many they are. */
-inline std::int64_t read_flags(std::uint8_t *rows, const unsigned char *bytes, std::int64_t count) noexcept
+ROSETTA_JIT_INLINE std::int64_t read_flags(std::uint8_t *rows, const unsigned char *bytes, std::int64_t count) noexcept
 {
     if (count >= 16) {
         std::int64_t done = 0;
