@@ -2180,15 +2180,8 @@ struct without_values {
     template <class Choice, class = decltype(Choice::SKIP)> constexpr operator Choice() const noexcept { return Choice::SKIP; }
 };
 
-/* Lists whose elements are set where they are as a message is read: they have no rows, and no more elements than rows may be. A pointer reaches elements that
-   lie one behind the other, an iterator those of other lists, as of std::deque. */
-template <class Container, std::size_t Fixed = 0> struct open_lane {
-    using Element = element_type<Container>;
-    static_assert(Fixed == 0 || can_resize<Container>::value || sizeof(Container) == Fixed * sizeof(Element),
-                  "the class has another number of elements than the schema");
-    using Elements = decltype(elements_of(std::declval<Container &>()));
-    static_assert(std::is_base_of_v<std::random_access_iterator_tag, typename std::iterator_traits<Elements>::iterator_category>,
-                  "the elements of a list must be reached by their index");
+/* Lists whose elements are set where they are as a message is read: they have no rows, and no more elements than rows may be. */
+template <class Elements> struct lane_in_object {
     Elements rows = {};
     std::int64_t capacity = 0;
     std::int64_t used = 0;
@@ -2201,6 +2194,18 @@ template <class Container, std::size_t Fixed = 0> struct open_lane {
     }
 
     bool grow(std::int64_t, std::int64_t) const noexcept { return false; }
+};
+
+/* What reaches the elements of a list: a pointer those that lie one behind the other, an iterator those of other lists, as of std::deque. */
+template <class Container> using elements_reached = decltype(elements_of(std::declval<Container &>()));
+
+/* Such a list of structs or numbers. */
+template <class Container, std::size_t Fixed = 0> struct open_lane : lane_in_object<elements_reached<Container>> {
+    using Element = element_type<Container>;
+    static_assert(Fixed == 0 || can_resize<Container>::value || sizeof(Container) == Fixed * sizeof(Element),
+                  "the class has another number of elements than the schema");
+    static_assert(std::is_base_of_v<std::random_access_iterator_tag, typename std::iterator_traits<elements_reached<Container>>::iterator_category>,
+                  "the elements of a list must be reached by their index");
 };
 
 /* Gives a list as many elements as follow in the message, where it has another number of them. */
@@ -2286,20 +2291,7 @@ template <class Container> ROSETTA_JIT_INLINE texts_of<Container> opened_texts(C
 }
 
 /* The same of lists of texts. */
-template <class Container> struct text_lane {
-    texts_of<Container> rows;
-    std::int64_t capacity = 0;
-    std::int64_t used = 0;
-
-    void reset(std::int64_t most) noexcept
-    {
-        rows = {};
-        capacity = most;
-        used = 0;
-    }
-
-    bool grow(std::int64_t, std::int64_t) const noexcept { return false; }
-};
+template <class Container> struct text_lane : lane_in_object<texts_of<Container>> {};
 
 template <class Message, class = void> struct shows_unknown : std::false_type {};
 template <class Message> struct shows_unknown<Message, std::void_t<decltype(std::declval<Message &>().mutable_unknown_fields())>> : std::true_type {};
